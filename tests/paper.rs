@@ -46,7 +46,7 @@ fn table() -> Vec<Requirement> {
     table.remove("requirement").unwrap()
 }
 
-/// The Rust and Coq files of the workspace's members, by their paths, with their texts.
+/// The Rust and Coq files of the workspace's members and the files of facts, by their paths, with their texts.
 fn sources() -> BTreeMap<String, String> {
     let members =
         names_in(&repository("")).into_iter().map(|name| name + "/").chain([String::new()]);
@@ -69,7 +69,10 @@ fn add_sources(path: &str, found: &mut BTreeMap<String, String>) {
         for name in names_in(&repository(path)) {
             add_sources(&format!("{path}/{name}"), found);
         }
-    } else if Path::new(path).extension().is_some_and(|kind| kind == "rs" || kind == "v") {
+    } else if Path::new(path)
+        .extension()
+        .is_some_and(|kind| kind == "rs" || kind == "v" || kind == "txt")
+    {
         found.insert(path.to_owned(), read(path));
     }
 }
@@ -84,9 +87,14 @@ enum CitationKind {
 }
 
 /// The citations in a file: id, kind, and line. A citation is a comment of its own or at the end of a line:
-/// `// paper: id`, or several ids separated by commas; in a Coq file, `(* paper: id *)`.
+/// `// paper: id`, or several ids separated by commas; in a Coq file, `(* paper: id *)`, among facts, `# paper: id`.
 fn citations<'a>(file: &str, text: &'a str) -> Vec<(&'a str, CitationKind, usize)> {
-    let in_coq = Path::new(file).extension().is_some_and(|extension| extension == "v");
+    let begin = match file.rsplit('.').next() {
+        Some("v") => "(* paper:",
+        Some("txt") => "# paper:",
+        _ => "// paper:",
+    };
+    let in_coq = begin.starts_with('(');
     let tested = file.split('/').any(|part| ["tests", "tests.rs", "lemmas"].contains(&part));
     let mut kind = if tested || in_coq { CitationKind::Test } else { CitationKind::Code };
     let mut found = Vec::new();
@@ -94,7 +102,6 @@ fn citations<'a>(file: &str, text: &'a str) -> Vec<(&'a str, CitationKind, usize
         if line.starts_with("#[cfg(test)]") {
             kind = CitationKind::Test;
         }
-        let begin = if in_coq { "(* paper:" } else { "// paper:" };
         let Some((before, ids)) = line.split_once(begin) else { continue };
         // Not in a string, nor in the documentation of an item.
         if !in_coq && before.contains(['"', '/']) {

@@ -15,7 +15,6 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{MapWalk, MappingEvent, Observer, PartialMap},
     percept::{Percept, Sighting},
-    world::Action,
 };
 
 use crate::{
@@ -24,16 +23,7 @@ use crate::{
     text::{counted, print_indented, vertices},
 };
 
-/// How much a story contains; by default neither.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct StoryDetail {
-    /// Every rejected candidate, and not only the first few of each round.
-    pub every_hypothesis: bool,
-    /// The doors taken, and each pick-up and drop of the marker.
-    pub doors: bool,
-}
-
-/// How many rejected candidates of a round are printed unless all are wanted.
+/// How many rejected candidates of a round are printed.
 const PRINTED_REJECTIONS: usize = 4;
 
 /// A line of a story, before it is wrapped.
@@ -68,9 +58,7 @@ impl Display for StoryLine {
 pub struct Story {
     /// Since they were last taken.
     lines: Vec<StoryLine>,
-    detail: StoryDetail,
     round: u64,
-    actions: Vec<Action>,
     /// Rejected in this round. With a movable marker: in this stage of the round.
     rejected: usize,
     /// The moves for those of them that were not printed.
@@ -82,16 +70,15 @@ pub struct Story {
 impl Story {
     /// The story of a run in a world, from its start.
     #[must_use]
-    pub fn new(world: &NamedWorld, facing: Dart, detail: StoryDetail) -> Self {
-        Self::with_head(head(world, facing), detail)
+    pub fn new(world: &NamedWorld, facing: Dart) -> Self {
+        Self::with_head(head(world, facing))
     }
 
     /// The story of a run in a world that the head describes.
     #[must_use]
-    pub fn with_head(head: String, detail: StoryDetail) -> Self {
-        let (actions, rejected, moves_not_printed) = (Vec::new(), 0, 0);
+    pub fn with_head(head: String) -> Self {
         let lines = vec![StoryLine { text: head, ..StoryLine::default() }];
-        Self { lines, detail, round: 0, actions, rejected, moves_not_printed, moves: 0 }
+        Self { lines, round: 0, rejected: 0, moves_not_printed: 0, moves: 0 }
     }
 
     /// The lines of a whole story, and the number of them after each number of steps.
@@ -116,9 +103,6 @@ impl Story {
 
     fn add_event(&mut self, journey: &MapWalk, event: MappingEvent) {
         let map = journey.map();
-        if self.detail.doors {
-            self.actions.extend(event.action());
-        }
         match event {
             MappingEvent::Started { percept } => {
                 let marker = match percept.sighting {
@@ -200,7 +184,7 @@ impl Story {
 
     fn add_rejected(&mut self, journey: &MapWalk, what: &str, why: &str) {
         self.rejected += 1;
-        if self.rejected > PRINTED_REJECTIONS && !self.detail.every_hypothesis {
+        if self.rejected > PRINTED_REJECTIONS {
             self.moves_not_printed += journey.moves() - self.moves;
             self.moves = journey.moves();
             return;
@@ -219,23 +203,13 @@ impl Story {
     fn add_omitted(&mut self) {
         let (rejected, moves) =
             (mem::take(&mut self.rejected), mem::take(&mut self.moves_not_printed));
-        if rejected > PRINTED_REJECTIONS && !self.detail.every_hypothesis {
+        if rejected > PRINTED_REJECTIONS {
             let more = grouped((rejected - PRINTED_REJECTIONS) as u128);
             self.add_line(format!("... and {more} more, all rejected{}.", in_moves(moves)));
         }
     }
 
-    /// The doors since they were last printed, if they are wanted.
-    fn add_doors(&mut self) {
-        if !self.detail.doors {
-            return;
-        }
-        let doors: Vec<_> = self.actions.drain(..).map(|action| action.to_string()).collect();
-        self.lines.push(StoryLine::hanging("  Doors: ".to_owned(), doors.join(" ")));
-    }
-
     fn add_map(&mut self, map: &PartialMap) {
-        self.add_doors();
         let unexplored = map.unexplored_count() as usize;
         let edges = counted((map.dart_count() - unexplored) / 2, "edge");
         let (vertices, unexplored) = (vertices(map.vertex_count()), counted(unexplored, "dart"));

@@ -179,6 +179,8 @@ pub fn byte(choose: &mut impl Choose) -> u8 {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use toposlam_model::isomorphism::code;
 
     use super::*;
@@ -191,7 +193,7 @@ mod tests {
             drawn.push(draw(choose));
             Ok(())
         };
-        ChoiceOdometer::exhaust(lemma, &mut |_| {}).unwrap();
+        ChoiceOdometer::exhaust(lemma, &mut |_| ControlFlow::Continue(())).unwrap();
         let mut different = drawn.clone();
         different.sort_unstable();
         different.dedup();

@@ -1,5 +1,7 @@
 //! Lemmas and their declaration.
 
+use std::ops::ControlFlow;
+
 use serde::Serialize;
 
 use crate::{
@@ -73,18 +75,30 @@ pub enum LemmaFailure {
     Case(Counterexample),
     /// The number of cases is wrong.
     Cases { pinned: u64, found: u64 },
+    /// The check was ended after so many cases.
+    Stopped(u64),
 }
 
 impl Lemma {
     /// Checks the lemma on every case within its bound, and returns their number. It reports the number so
-    /// far to `progress` from time to time.
+    /// far to `progress` from time to time, which can end it.
     ///
     /// # Errors
-    /// Returns the first case in which the lemma fails, or an error if the number of cases is wrong.
-    pub fn check(&self, progress: &mut impl FnMut(u64)) -> Result<u64, LemmaFailure> {
+    /// Returns the first case in which the lemma fails, or an error if the number of cases is wrong, or if
+    /// the check was ended.
+    pub fn check(
+        &self,
+        progress: &mut impl FnMut(u64) -> ControlFlow<()>,
+    ) -> Result<u64, LemmaFailure> {
         let Exhaustive { body, cases: pinned, .. } = self.exhaustive;
-        match ChoiceOdometer::exhaust(body, progress) {
+        let mut ended = ControlFlow::Continue(());
+        let cases = ChoiceOdometer::exhaust(body, &mut |so_far| {
+            ended = progress(so_far);
+            ended
+        });
+        match cases {
             Err(counterexample) => Err(LemmaFailure::Case(counterexample)),
+            Ok(found) if ended.is_break() => Err(LemmaFailure::Stopped(found)),
             Ok(found) if found != pinned || found == 0 => {
                 Err(LemmaFailure::Cases { pinned, found })
             }
@@ -201,8 +215,8 @@ pub(crate) mod tests {
 
     pub(crate) fn exhaustively(lemmas: &[Lemma], name: &str) {
         let lemma = named(lemmas, name);
-        match lemma.check(&mut |_| {}) {
-            Ok(_) => {}
+        match lemma.check(&mut |_| ControlFlow::Continue(())) {
+            Ok(_) | Err(LemmaFailure::Stopped(_)) => {}
             Err(LemmaFailure::Cases { pinned, found }) => {
                 panic!("there are {found} cases; there must be {pinned}, and at least one")
             }
@@ -224,7 +238,7 @@ pub(crate) mod tests {
                 Err(Stop::Excluded) => return Err(TestCaseError::reject("excluded")),
                 Err(Stop::Fails(claim)) => return Err(TestCaseError::fail(format!(
                     "it does not hold that {claim}:\n  \
-                     toposlam proofs --run {name} --engine sampled --choices {}",
+                     toposlam proofs --run {name} --choices {}",
                     listed(choose.choices())
                 ))),
             }

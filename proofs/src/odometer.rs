@@ -1,6 +1,6 @@
 //! The exhaustive driver: every case within a bound.
 
-use std::fmt;
+use std::{fmt, ops::ControlFlow};
 
 use crate::choose::{CaseResult, Choose, Stop, unless_it_panics};
 
@@ -17,13 +17,13 @@ pub struct ChoiceOdometer {
 
 impl ChoiceOdometer {
     /// Makes every case, and returns the number of those to which the lemma applies. It reports the number
-    /// so far to `progress` from time to time.
+    /// so far to `progress` from time to time, which can end it.
     ///
     /// # Errors
     /// Returns the first case in which the lemma fails.
     pub fn exhaust(
         mut lemma: impl FnMut(&mut Self) -> CaseResult,
-        progress: &mut impl FnMut(u64),
+        progress: &mut impl FnMut(u64) -> ControlFlow<()>,
     ) -> Result<u64, Counterexample> {
         let mut odometer = Self::default();
         let mut accepted = 0_u64;
@@ -37,8 +37,8 @@ impl ChoiceOdometer {
                 Err(Stop::Fails(what)) => Some(what),
                 Ok(()) => {
                     accepted += 1;
-                    if accepted.is_multiple_of(PROGRESS) {
-                        progress(accepted);
+                    if accepted.is_multiple_of(PROGRESS) && progress(accepted).is_break() {
+                        return Ok(accepted);
                     }
                     None
                 }

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use thiserror::Error;
-use toposlam_draw::story::{PrintedStory, Story, StoryDetail};
+use toposlam_draw::story::{PrintedStory, Story};
 use toposlam_model::{
     enumerate::Watch,
     folding,
@@ -114,8 +114,7 @@ pub(crate) fn explore(
     let (mapped, journey, recorder) = run_watched(py, None, None, |watcher| {
         let marked = GraphWorld::with_marker(&world.graph, algorithm.marker(), facing);
         let mut robot = StoppableWorld { world: marked, watcher };
-        let detail = StoryDetail { every_hypothesis: false, doors: false };
-        let story = PrintedStory::new(Story::new(world, facing, detail), Some(Vec::new()));
+        let story = PrintedStory::new(Story::new(world, facing), Some(Vec::new()));
         let mut recorder = Recorder { story, actions: Vec::new() };
         let (journey, mapped) = algorithm.map_world(&mut robot, max_darts, &mut recorder);
         let judged = mapped.map(|()| {

@@ -26,7 +26,7 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, CliError, Outcome, RunChoices,
+    CliError, Outcome, RunChoices,
     ci_report::{CiCase, CiOptions},
     cluster::{ClusterOptions, ClusterSession, SharedOutput},
     edge_range::EdgeRange,
@@ -38,6 +38,7 @@ use super::{
     method_options::algorithms,
     output,
     progress::Progress,
+    run_choices,
     text::counted,
     use_threads,
     version::version,
@@ -110,14 +111,10 @@ pub(super) struct CheckArguments {
     #[arg(long, default_value = "algorithm1", hide_possible_values = true, value_parser = algorithms())]
     algorithm: MappingAlgorithm,
 
-    /// Runs from each start: default, or all that the open choices of Algorithm 1 allow
-    #[arg(long, default_value = "default", hide_possible_values = true)]
-    choices: ChoicesOption,
-
-    /// With --choices all: skip a start that has more states, between rounds (line 4) and within
-    /// (line 8) [default: 1000000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    max_states: Option<u64>,
+    /// Runs from each start: default, or all that the open choices of Algorithm 1 allow; with all=N, skip a
+    /// start with more than N states, between rounds (line 4) and within (line 8), instead of 1000000
+    #[arg(long, default_value = "default", value_parser = run_choices)]
+    choices: RunChoices,
 
     /// Check one of N disjoint shares of the starts, as in 2/4; --add adds up the results of --json
     #[arg(long, default_value = "1/1", value_name = "I/N", allow_hyphen_values = true)]
@@ -175,13 +172,12 @@ pub(super) struct CheckArguments {
 }
 
 /// Options of a check, which --add does not do.
-const NOT_ADDED: [&str; 16] = [
+const NOT_ADDED: [&str; 15] = [
     "edges",
     "class",
     "marker",
     "algorithm",
     "choices",
-    "max_states",
     "shard",
     "from",
     "worst",
@@ -221,7 +217,6 @@ enum Work {
 
 impl CheckArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        let choices = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
         self.ci.check_places()?;
         if self.add {
@@ -231,7 +226,8 @@ impl CheckArguments {
             let (options, marker) = (&self.explorer, self.marker);
             Mapper::Explorer(ExplorerSweep { command, options, marker })
         } else {
-            Mapper::Algorithm(algorithm_for(self.algorithm, self.marker, choices)?, choices)
+            let algorithm = algorithm_for(self.algorithm, self.marker, self.choices)?;
+            Mapper::Algorithm(algorithm, self.choices)
         };
         let work = match &self.from {
             Some(path) => self.listed(path)?,
@@ -246,7 +242,7 @@ impl CheckArguments {
             output::check_place(failed, &["toml", "json", "dot", "svg", "png"])?;
         }
         match mapper {
-            Mapper::Algorithm(algorithm, _) if self.estimate.estimate => {
+            Mapper::Algorithm(algorithm, _) if self.estimate.estimate.is_some() => {
                 self.print_estimates(&work, algorithm, out)
             }
             mapper => self.check(&mapper, work, out),
@@ -468,9 +464,9 @@ impl CheckArguments {
                 let cause = movable_not_sufficient(format!("class {class}"));
                 return Err(CliError::at("--class", cause));
             }
-            ChoicesOption::Default => SharedPrefixCheck::new(class, edges, self.shard)
+            RunChoices::Default => SharedPrefixCheck::new(class, edges, self.shard)
                 .map(|sweep| Work::Shared(Box::new(sweep))),
-            ChoicesOption::All => Check::new(class, edges, self.shard).map(Work::All),
+            RunChoices::All { .. } => Check::new(class, edges, self.shard).map(Work::All),
         };
         Ok((edges, work.map_err(|error| CliError::at("--edges", error))?))
     }

@@ -8,7 +8,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use clap::ValueEnum;
 use toposlam_model::{format::dot, marker::Marker};
 
 use super::{
@@ -42,24 +41,11 @@ pub(super) struct DrawArguments {
     /// Kind of marker, in a picture [default: the one in the file, or else directional]
     #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
     marker: Option<&'static dyn Marker>,
-    /// The file to write: .svg, .png or .dot [default: standard output]
+    /// The file to write: .svg, .png or .dot [default: standard output, as SVG]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// The format on standard output: svg, png or dot
-    #[arg(long, default_value = "svg", hide_possible_values = true, conflicts_with = "out")]
-    format: Format,
     #[command(flatten)]
     view: ViewOptions,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// A vector drawing
-    Svg,
-    /// An image
-    Png,
-    /// A Graphviz file
-    Dot,
 }
 
 impl DrawArguments {
@@ -72,7 +58,8 @@ impl DrawArguments {
         if let Some(path) = &self.out {
             output::check_place(path, &["svg", "png", "dot"])?;
         }
-        if let (Format::Dot, Some(_)) = (self.format(), self.marker) {
+        let ending = self.out.as_deref().and_then(Path::extension).and_then(OsStr::to_str);
+        if ending == Some("dot") && self.marker.is_some() {
             return Err(CliError::at("--marker", "a DOT file does not show the marker"));
         }
         let mut world = input::read_world(&self.world)?;
@@ -81,26 +68,15 @@ impl DrawArguments {
             world.start = Some(input::start_of(&world, Some(text))?);
         }
         let drawn = || svg(&WorldPicture::from(&world));
-        let bytes = match self.format() {
-            Format::Svg => drawn().into_bytes(),
-            Format::Png => png(&drawn()).map_err(|error| CliError::in_file(&self.world, error))?,
-            Format::Dot => dot::write(&world).into_bytes(),
+        let bytes = match ending {
+            Some("png") => png(&drawn()).map_err(|error| CliError::in_file(&self.world, error))?,
+            Some("dot") => dot::write(&world).into_bytes(),
+            _ => drawn().into_bytes(),
         };
         match &self.out {
             Some(path) => output::write_whole(path, &bytes)?,
             None => out.write_all(&bytes)?,
         }
         Ok(Outcome::Holds)
-    }
-
-    /// The format that the file name or `--format` asks for.
-    fn format(&self) -> Format {
-        let ending = self.out.as_deref().and_then(Path::extension).and_then(OsStr::to_str);
-        match ending {
-            Some("svg") => Format::Svg,
-            Some("png") => Format::Png,
-            Some("dot") => Format::Dot,
-            _ => self.format,
-        }
     }
 }

@@ -17,7 +17,7 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, CliError, Outcome, RunChoices,
+    CliError, Outcome, RunChoices,
     certificate_cost::CertificateCost,
     exit_codes::help_end,
     input,
@@ -26,11 +26,12 @@ use super::{
     method_options::{AuditOption, algorithms},
     output,
     progress::{StopSignal, watch_for_interrupt},
+    run_choices,
     text::print_paragraph,
 };
 use crate::{
     picture::{self, WorldPicture},
-    story::{PrintedStory, Story, StoryDetail, head},
+    story::{PrintedStory, Story, head},
 };
 use report::ExploredWorld;
 use summary::Summary;
@@ -68,7 +69,7 @@ rule out. To test it, the robot follows the path that would lead from there to t
         (0, "the map is right"),
         (1, "the map is wrong"),
         (2, "bad usage or input"),
-        (3, "not known: ended by Ctrl-C, or --max-darts, --max-states or 1 GiB of memory for the states was reached"),
+        (3, "not known: ended by Ctrl-C, or --max-darts, the states of --choices or 1 GiB of memory for the states was reached"),
     ],
 ))]
 #[expect(clippy::struct_excessive_bools, reason = "these are independent switches")]
@@ -88,14 +89,10 @@ pub(super) struct ExploreArguments {
     #[arg(long, default_value = "directional", value_parser = mapping_marker)]
     marker: &'static dyn Marker,
 
-    /// Runs: default, or all to also try every choice that Algorithm 1 leaves open
-    #[arg(long, default_value = "default", hide_possible_values = true)]
-    choices: ChoicesOption,
-
-    /// With --choices all: stop when there are more states, between rounds (line 4) and within
-    /// (line 8) [default: 1000000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    max_states: Option<u64>,
+    /// Runs: default, or all to also try every choice that Algorithm 1 leaves open; with all=N, stop at more
+    /// than N states, between rounds (line 4) and within (line 8), instead of 1000000
+    #[arg(long, default_value = "default", value_parser = run_choices)]
+    choices: RunChoices,
 
     /// Stop when more darts (edge ends) are known
     #[arg(long, value_name = "N", default_value_t = DEFAULT_DART_BOUND)]
@@ -106,16 +103,8 @@ pub(super) struct ExploreArguments {
     story: bool,
 
     /// Print counts of rounds and candidates in place of the story [default: in larger worlds]
-    #[arg(long, conflicts_with_all = ["story", "full", "doors", "json"])]
+    #[arg(long, conflicts_with_all = ["story", "json"])]
     summary: bool,
-
-    /// Print every rejected candidate, not only the first few of each round
-    #[arg(long, conflicts_with = "json")]
-    full: bool,
-
-    /// Print the doors taken, and each pick-up and drop of the marker
-    #[arg(long, conflicts_with = "json")]
-    doors: bool,
 
     #[command(flatten)]
     audit: AuditOption,
@@ -151,8 +140,7 @@ enum RunPrinter<'o, W: Write> {
 
 impl ExploreArguments {
     fn summarises(&self, world: &NamedWorld) -> bool {
-        let story = self.story || self.full || self.doors;
-        self.summary || (!story && world.graph.vertex_count() > STORY_VERTICES)
+        self.summary || (!self.story && world.graph.vertex_count() > STORY_VERTICES)
     }
 
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
@@ -173,14 +161,13 @@ impl ExploreArguments {
                 return Err(CliError::at(option, "needs --marker directional"));
             }
         }
-        let choices = self.choices.with_budget(self.max_states)?;
-        let algorithm = algorithm_for(self.algorithm, self.marker, choices)?;
-        self.explore((algorithm, choices), &world, facing, out)
+        let algorithm = algorithm_for(self.algorithm, self.marker, self.choices)?;
+        self.explore(algorithm, &world, facing, out)
     }
 
     fn explore(
         &self,
-        (algorithm, choices): (MappingAlgorithm, RunChoices),
+        algorithm: MappingAlgorithm,
         world: &NamedWorld,
         facing: Dart,
         out: &mut dyn Write,
@@ -192,8 +179,7 @@ impl ExploreArguments {
             print_paragraph(&mut out, &head(world, facing))?;
             RunPrinter::Summary(Summary::default())
         } else {
-            let detail = StoryDetail { every_hypothesis: self.full, doors: self.doors };
-            let story = Story::new(world, facing, detail);
+            let story = Story::new(world, facing);
             RunPrinter::Story(Box::new(PrintedStory::new(story, Some(&mut out))))
         };
         let method = MappingMethod::By { algorithm, audits: self.audit.audits().unwrap_or(0) };
@@ -220,7 +206,8 @@ impl ExploreArguments {
         let moves = run.moves_of_right_map();
         let certificate = || CertificateCost::with_doors(&world.graph, facing, moves);
         run.certificate = self.certificate.then(certificate);
-        run.ways = algorithm.other_runs(choices, (&world.graph, facing), &StopSignal).transpose();
+        run.ways =
+            algorithm.other_runs(self.choices, (&world.graph, facing), &StopSignal).transpose();
         if let Some(doors) = doors {
             run.print_json(doors, &mut out)?;
         } else {

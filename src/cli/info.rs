@@ -5,9 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
 use toposlam_logs::{
-    FileCompression, Format, SkippedLines,
+    FileCompression, Format,
+    error::LogError,
     reader::Log,
     topic::{Encoding, Topic},
     topic_map::{RoleGuess, TopicMap, guess},
@@ -66,72 +67,16 @@ pub(super) struct InfoArguments {
     json: bool,
 }
 
-/// What `--json` prints for a log.
-#[derive(Serialize)]
-struct LogReport<'l> {
-    log: String,
-    format: &'static str,
-    compression: Option<&'static str>,
-    bytes: u64,
-    /// Nanoseconds.
-    start: Option<u64>,
-    end: Option<u64>,
-    /// Seconds.
-    duration: Option<f64>,
-    messages: u64,
-    truncated: Option<TruncatedLine>,
-    indexed: bool,
-    skipped: Option<&'l SkippedLines>,
-    verification: Option<VerificationReport>,
-    topics: Vec<TopicReport<'l>>,
-    /// For each role, the topics that could carry it, or the one in the topics file.
-    #[serde(serialize_with = "as_map")]
-    mapping: Carriers<'l>,
+/// An open log, what its topics could carry, and its verification, if it is wanted.
+struct ListedLog<'l> {
+    path: &'l Path,
+    log: &'l Log,
+    carriers: Carriers<'l>,
+    verification: Option<Verification>,
 }
 
-/// With `--verify`.
-#[derive(Serialize)]
-struct VerificationReport {
-    chunks: u64,
-    messages: u64,
-    /// The number of bytes that a checksum covers.
-    covered_bytes: u64,
-    complete: bool,
-    damage: Vec<DamageReport>,
-    verdict: &'static str,
-    holds: bool,
-}
-
-#[derive(Serialize)]
-struct DamageReport {
-    offset: u64,
-    cause: String,
-}
-
-/// What `--json` prints for a log that is too damaged to be listed.
-#[derive(Serialize)]
-struct DamagedLogReport {
-    log: String,
-    verification: VerificationReport,
-}
-
-#[derive(Serialize)]
-struct TopicReport<'l> {
-    name: &'l str,
-    r#type: &'l str,
-    encoding: &'l str,
-    messages: u64,
-    /// Messages a second; not of a log that is shorter than a second.
-    rate: Option<f64>,
-    undecodable: Option<String>,
-}
-
-/// For each role, the names of topics.
+/// For each role, the names of the topics that could carry it, or of the one in the topics file.
 type Carriers<'l> = Vec<(&'static str, Vec<&'l str>)>;
-
-fn as_map<S: Serializer>(carriers: &Carriers, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(carriers.iter().map(|(role, topics)| (role, topics)))
-}
 
 impl InfoArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
@@ -173,10 +118,10 @@ impl InfoArguments {
             Err(error) if self.verify && error.cause.is_damage() => {
                 let found = Verification { damage: vec![error], ..Verification::default() };
                 let log = path.display().to_string();
-                let verification = VerificationReport::new(&found, Outcome::Violated);
                 if self.json {
-                    let report = DamagedLogReport { log, verification };
-                    print_line(out, "damaged-log", &report)?;
+                    let verification = verification_json(&found, Outcome::Violated);
+                    let line = json!({ "log": log, "verification": verification });
+                    print_line(out, "damaged-log", &line)?;
                 } else {
                     writeln!(out, "{log}: damaged, and not read further")?;
                     print_damage(out, &found)?;
@@ -201,11 +146,11 @@ impl InfoArguments {
             _ if is_interrupted || log.truncation().is_some() => Outcome::Incomplete,
             _ => Outcome::Holds,
         };
-        let report = LogReport::new(path, &log, verification.as_ref(), outcome, carriers);
+        let listed = ListedLog { path, log: &log, carriers, verification };
         if self.json {
-            print_line(out, "log", &report)?;
+            print_line(out, "log", &listed.json(outcome))?;
         } else {
-            report.print(out, &log, verification.as_ref())?;
+            listed.print(out)?;
         }
         Ok((is_interrupted, outcome))
     }
@@ -232,21 +177,19 @@ fn verify(path: &Path, log: &Log) -> Result<Verification, CliError> {
     found
 }
 
-impl VerificationReport {
-    fn new(found: &Verification, outcome: Outcome) -> Self {
-        let damage = found.damage.iter();
-        Self {
-            chunks: found.chunks,
-            messages: found.messages,
-            covered_bytes: found.covered,
-            complete: found.complete,
-            damage: damage
-                .map(|error| DamageReport { offset: error.offset, cause: error.cause.to_string() })
-                .collect(),
-            verdict: outcome.verdict(),
-            holds: outcome == Outcome::Holds,
-        }
-    }
+/// What `--json` prints with `--verify`.
+fn verification_json(found: &Verification, outcome: Outcome) -> Value {
+    let damage =
+        |error: &LogError| json!({ "offset": error.offset, "cause": error.cause.to_string() });
+    json!({
+        "chunks": found.chunks,
+        "messages": found.messages,
+        "covered_bytes": found.covered,
+        "complete": found.complete,
+        "damage": found.damage.iter().map(damage).collect::<Vec<_>>(),
+        "verdict": outcome.verdict(),
+        "holds": outcome == Outcome::Holds,
+    })
 }
 
 fn print_damage(out: &mut dyn Write, found: &Verification) -> Result<(), CliError> {
@@ -273,60 +216,71 @@ fn shown(name: &str) -> String {
     name.escape_debug().to_string()
 }
 
-impl<'l> LogReport<'l> {
-    fn new(
-        path: &Path,
-        log: &'l Log,
-        verification: Option<&Verification>,
-        outcome: Outcome,
-        mapping: Carriers<'l>,
-    ) -> Self {
-        let duration = log.start().zip(log.end());
-        let duration = duration.map(|(start, end)| end.saturating_sub(start) as f64 / 1e9);
-        let whole_seconds = duration.filter(|duration| *duration >= 1.0);
-        let topic = |topic: &'l Topic| TopicReport {
-            name: &topic.name,
-            r#type: &topic.type_name,
-            encoding: match &topic.encoding {
+impl ListedLog<'_> {
+    /// Seconds.
+    fn duration(&self) -> Option<f64> {
+        let (start, end) = self.log.start().zip(self.log.end())?;
+        Some(end.saturating_sub(start) as f64 / 1e9)
+    }
+
+    /// The messages of a topic in a second; not of a log that is shorter than a second.
+    fn rate(&self, topic: &Topic) -> Option<f64> {
+        let whole_seconds = self.duration().filter(|duration| *duration >= 1.0);
+        whole_seconds.map(|duration| topic.messages as f64 / duration)
+    }
+
+    fn is_indexed(&self) -> bool {
+        // Lines have none: all of them are read.
+        !matches!(self.log.format(), Format::Carmen | Format::Events) && self.log.is_indexed()
+    }
+
+    /// What `--json` prints.
+    fn json(&self, outcome: Outcome) -> Value {
+        let Self { path, log, carriers, verification } = self;
+        let topic = |topic: &Topic| {
+            let encoding = match &topic.encoding {
                 Encoding::Ros1 => "ros1",
                 Encoding::Cdr => "cdr",
                 Encoding::Carmen => "carmen",
                 Encoding::Event => "event",
                 Encoding::Other(other) => other,
-            },
-            messages: topic.messages,
-            rate: whole_seconds.map(|duration| topic.messages as f64 / duration),
-            undecodable: topic.definition.as_ref().err().map(ToString::to_string),
+            };
+            json!({
+                "name": topic.name, "type": topic.type_name, "encoding": encoding,
+                "messages": topic.messages, "rate": self.rate(topic), "undecodable": undecodable(topic),
+            })
         };
-        Self {
-            log: path.display().to_string(),
-            format: format(log)[0],
-            compression: log.compression().map(FileCompression::name),
-            bytes: log.size(),
-            start: log.start(),
-            end: log.end(),
-            duration,
-            messages: log.messages_total(),
-            truncated: log.truncation().map(TruncatedLine::from),
-            // Lines have none: all of them are read.
-            indexed: !matches!(log.format(), Format::Carmen | Format::Events) && log.is_indexed(),
-            skipped: log.skipped(),
-            verification: verification.map(|found| VerificationReport::new(found, outcome)),
-            topics: log.topics().iter().map(topic).collect(),
-            mapping,
-        }
+        let mapping = carriers.iter().map(|(role, topics)| ((*role).to_owned(), json!(topics)));
+        let mapping: Map<_, _> = mapping.collect();
+        json!({
+            "log": path.display().to_string(),
+            "format": format(log)[0],
+            "compression": log.compression().map(FileCompression::name),
+            "bytes": log.size(),
+            // Nanoseconds.
+            "start": log.start(),
+            "end": log.end(),
+            "duration": self.duration(),
+            "messages": log.messages_total(),
+            "truncated": log.truncation().map(TruncatedLine::from),
+            "indexed": self.is_indexed(),
+            "skipped": log.skipped(),
+            "verification": verification.as_ref().map(|found| verification_json(found, outcome)),
+            "topics": log.topics().iter().map(topic).collect::<Vec<_>>(),
+            "mapping": mapping,
+        })
     }
 
     /// What is known of the contents.
     fn contents(&self) -> String {
-        let index = if self.indexed { "an index" } else { "no index" };
+        let index = if self.is_indexed() { "an index" } else { "no index" };
         match &self.verification {
             None => format!("has {index}, contents not verified"),
             Some(found) if !found.damage.is_empty() => format!("has {index}, contents damaged:"),
             Some(found) if !found.complete => format!("has {index}, verification interrupted"),
             Some(found) => {
                 let [covered, size] =
-                    [found.covered_bytes, self.bytes].map(|bytes| grouped(bytes.into()));
+                    [found.covered, self.log.size()].map(|bytes| grouped(bytes.into()));
                 let messages = counted(found.messages as usize, "message");
                 let chunks = counted(found.chunks as usize, "chunk");
                 format!(
@@ -337,34 +291,31 @@ impl<'l> LogReport<'l> {
         }
     }
 
-    fn print(
-        &self,
-        out: &mut dyn Write,
-        log: &Log,
-        verification: Option<&Verification>,
-    ) -> Result<(), CliError> {
-        let compression = self.compression.map_or(String::new(), |known| format!(", {known}"));
-        let size = grouped(self.bytes.into());
-        writeln!(out, "{}: {}{compression}, {size} bytes", self.log, format(log)[1])?;
+    fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
+        let log = self.log;
+        let compression =
+            log.compression().map_or(String::new(), |known| format!(", {}", known.name()));
+        let (path, size) = (self.path.display(), grouped(log.size().into()));
+        writeln!(out, "{path}: {}{compression}, {size} bytes", format(log)[1])?;
         if let Some(truncation) = log.truncation() {
             print_hanging(out, "", &truncation.to_string())?;
         }
         print_hanging(out, "", &self.contents())?;
-        if let Some(found) = verification {
+        if let Some(found) = &self.verification {
             print_damage(out, found)?;
         }
-        if let (Some(start), Some(duration)) = (self.start, self.duration) {
+        if let (Some(start), Some(duration)) = (log.start(), self.duration()) {
             let exact = format!("{duration:.3} s");
             let duration = if duration < 60.0 { exact } else { duration_text(duration) };
             writeln!(out, "from {}, for {duration}", moment(start))?;
         }
-        writeln!(out, "{}", counted(self.messages as usize, "message"))?;
+        writeln!(out, "{}", counted(log.messages_total() as usize, "message"))?;
         if let Some(skipped) = log.skipped() {
             print_hanging(out, "", &format!("skipped {skipped}"))?;
         }
         writeln!(out)?;
-        let row = |topic: &TopicReport| {
-            let rate = match topic.rate {
+        let row = |topic: &Topic| {
+            let rate = match self.rate(topic) {
                 None => String::new(),
                 Some(rate) if rate < 100.0 => format!("{rate:.2}"),
                 Some(rate) => grouped(rate.round() as u128),
@@ -372,22 +323,27 @@ impl<'l> LogReport<'l> {
             [
                 format!("{:>10}", grouped(topic.messages.into())),
                 format!("{rate:>8}"),
-                shown(topic.name),
-                shown(topic.r#type),
-                topic.undecodable.as_deref().map(shown).unwrap_or_default(),
+                shown(&topic.name),
+                shown(&topic.type_name),
+                undecodable(topic).as_deref().map(shown).unwrap_or_default(),
             ]
         };
-        let rows: Vec<_> = self.topics.iter().map(row).collect();
+        let rows: Vec<_> = log.topics().iter().map(row).collect();
         print_rows(out, ["  messages", "a second", "topic", "type", ""], &rows)?;
         writeln!(out)?;
-        if self.mapping.is_empty() {
+        if self.carriers.is_empty() {
             writeln!(out, "No topic of a run is recognised; select topics with a topics file.")?;
             return Ok(());
         }
         let row = |(role, topics): &(&str, Vec<&str>)| [(*role).to_owned(), any_of(topics)];
-        let rows: Vec<_> = self.mapping.iter().map(row).collect();
+        let rows: Vec<_> = self.carriers.iter().map(row).collect();
         Ok(print_rows(out, ["role", "topic"], &rows)?)
     }
+}
+
+/// Why the messages of a topic cannot be decoded.
+fn undecodable(topic: &Topic) -> Option<String> {
+    topic.definition.as_ref().err().map(ToString::to_string)
 }
 
 /// The names of topics that could carry one role.

@@ -35,7 +35,7 @@ use std::{
 };
 
 use clap::{
-    Command, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
+    Command, CommandFactory, FromArgMatches, Parser, Subcommand,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 use toposlam_model::{
@@ -95,28 +95,17 @@ enum Verb {
     Conform(conform::ConformArguments),
 }
 
-/// How the open choices of Algorithm 1 are made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum ChoicesOption {
-    /// By default
-    Default,
-    /// In every way
-    All,
-}
-
-impl ChoicesOption {
-    /// The runs, with the budget of `--max-states`. There is none for the default choices.
-    fn with_budget(self, max_states: Option<u64>) -> Result<RunChoices, CliError> {
-        match (self, max_states) {
-            (Self::Default, None) => Ok(RunChoices::Default),
-            (Self::Default, Some(_)) => {
-                Err(CliError::at("--max-states", "this needs --choices all"))
-            }
-            (Self::All, budget) => {
-                Ok(RunChoices::All { budget: budget.unwrap_or(DEFAULT_STATE_BUDGET) })
-            }
-        }
-    }
+/// Parses how the open choices of Algorithm 1 are made: by default, or in every way with at most so many states.
+fn run_choices(text: &str) -> Result<RunChoices, String> {
+    let budget = match text {
+        "default" => return Ok(RunChoices::Default),
+        "all" => Some(DEFAULT_STATE_BUDGET),
+        _ => text.strip_prefix("all=").and_then(|budget| budget.parse().ok()),
+    };
+    let budget = budget.filter(|&budget| budget > 0);
+    budget
+        .map(|budget| RunChoices::All { budget })
+        .ok_or_else(|| "write default, all, or all=N with a number of states".to_owned())
 }
 
 /// Parses the name of a kind of marker. `--help` and errors list all kinds.
@@ -178,8 +167,7 @@ pub fn command() -> Command {
 /// Parses the command line. Prints help, the version or an error, and ends the program, if that is asked
 /// for or due.
 fn parse(arguments: &[OsString]) -> CommandLine {
-    let command = command().color(terminal::color_choice(arguments.iter().cloned()));
-    let mut command = old_names::with_old_options(command);
+    let mut command = old_names::with_old_options(command());
     let parsed = command.try_get_matches_from_mut(arguments);
     let parsed = parsed.and_then(|matches| CommandLine::from_arg_matches(&matches));
     parsed.unwrap_or_else(|error| error.format(&mut command).exit())

@@ -52,10 +52,8 @@ pub(super) fn with_new_names(mut arguments: Vec<OsString>) -> Result<RenamedArgu
             *argument = format!("{new}{value}").into();
         }
     }
-    let is_value = |before: &OsString| before == "--color";
-    let at = (1..arguments.len()).find(|&index| {
-        !arguments[index].to_string_lossy().starts_with('-') && !is_value(&arguments[index - 1])
-    });
+    let at =
+        (1..arguments.len()).find(|&index| !arguments[index].to_string_lossy().starts_with('-'));
     let name = at.and_then(|at| arguments[at].to_str()).unwrap_or_default();
     if let Some((name, instead)) = GONE.iter().find(|(old, _)| *old == name) {
         return Err(CliError::at(*name, format!("this command is gone; {instead}")));
@@ -74,7 +72,24 @@ pub(super) fn with_new_names(mut arguments: Vec<OsString>) -> Result<RenamedArgu
 }
 
 /// The options that have another name, or none: the command, the old name, and what to write.
-const OPTIONS: [(&[&str], &str, &str); 18] = [
+const OPTIONS: [(&[&str], &str, &str); 35] = [
+    (&[], "color", "the variables NO_COLOR and CLICOLOR_FORCE decide on colours"),
+    (&["check"], "max-states", "--choices all=N"),
+    (&["check"], "probes", "--estimate=N"),
+    (&["explore"], "max-states", "--choices all=N"),
+    (&["explore"], "full", "the story has the first candidates of each round"),
+    (&["explore"], "doors", "--json"),
+    (&["draw"], "format", "--out"),
+    (&["play"], "random", "without a world file, the world is random"),
+    (&["proofs"], "engine", "`--choices` alone finds the engine"),
+    (&["sense"], "out", "redirect standard output"),
+    (&["camera", "train"], "stripe-width", "--stripe floor=METRES"),
+    (&["simulate"], "max-moves", "--budget Nmoves"),
+    (&["simulate"], "max-minutes", "--budget Nmin"),
+    (&["simulate"], "battery-per-metre", "--budget Nm"),
+    (&["drive"], "max-moves", "--budget Nmoves"),
+    (&["drive"], "max-minutes", "--budget Nmin"),
+    (&["drive"], "battery-per-metre", "--budget Nm"),
     (&["check"], "max-edges", "--edges 1..=N"),
     (&["counterexample"], "edges", "--max-edges"),
     (&["counterexample"], "out", "--out-dir"),
@@ -106,8 +121,9 @@ fn add(command: Command, verb: &[&str], old: &'static str, new: &'static str) ->
             Some(_) => UnknownArgumentValueParser::suggest_arg(new),
             None => UnknownArgumentValueParser::suggest(new),
         };
-        return command
-            .arg(Arg::new(old).long(old).hide(true).value_name("VALUE").value_parser(error));
+        let option = Arg::new(old).long(old).hide(true).value_name("VALUE").global(verb.is_empty());
+        // An old flag has no value.
+        return command.arg(option.num_args(0..=1).default_missing_value("").value_parser(error));
     };
     command.mut_subcommand(first, |command| add(command, rest, old, new))
 }

@@ -31,21 +31,18 @@ use crate::page::play_page;
 /// and needs no network.
 #[derive(clap::Args)]
 #[command(
-    group = clap::ArgGroup::new("subject").required(true).args(["world", "random"]),
+    arg_required_else_help = true,
     after_help = help_end(
         "\
 Examples:
   toposlam play worlds/shape-6.toml --out play.html
-  toposlam play --random --edges 5 --seed 7 --out play.html",
+  toposlam play --edges 5 --seed 7 --out play.html",
         &[(0, "the page is written"), (2, "bad usage or input"), (3, "interrupted")],
     )
 )]
 pub(super) struct PlayArguments {
-    /// The world file
+    /// The world file [default: a start at random, each of a class and a number of edges equally likely]
     world: Option<PathBuf>,
-    /// Choose a start at random, each of a class and a number of edges equally likely
-    #[arg(long)]
-    random: bool,
     /// Number of edges of a random world, from 1 to 8
     #[arg(
         long,
@@ -62,7 +59,7 @@ pub(super) struct PlayArguments {
     #[arg(long, default_value_t = 1, value_name = "N", conflicts_with = "world")]
     seed: u64,
     /// Where the robot starts, and which door is behind it [default: the start in the file]
-    #[arg(long, value_name = "VERTEX:FACING", conflicts_with = "random")]
+    #[arg(long, value_name = "VERTEX:FACING", requires = "world")]
     start: Option<String>,
     /// The page to write: .html [default: standard output]
     #[arg(short, long, value_name = "FILE")]

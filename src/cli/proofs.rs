@@ -5,21 +5,18 @@ mod case;
 mod tests;
 
 use std::{
+    collections::BTreeSet,
     io::{self, Write},
-    sync::mpsc::{self, RecvTimeoutError},
-    thread,
-    time::{Duration, Instant},
+    ops::ControlFlow,
+    time::Instant,
 };
 
-use clap::ValueEnum;
-use serde::Serialize;
-use serde_json::json;
+use serde_json::{Value, json};
 use toposlam_model::enumerate::Watch;
 use toposlam_proofs::{
-    CaseReplay, Lemma, Stop, Theorem,
+    Lemma, Theorem,
     lemma::LemmaFailure,
     lemmas,
-    odometer::listed,
     theorems::{self, FILE},
 };
 
@@ -29,9 +26,8 @@ use super::{
     exit_codes::help_end,
     json::print_line,
     progress::Progress,
-    text::{counted, grouped, print_command, print_hanging, print_paragraph},
+    text::{counted, grouped, print_hanging, print_paragraph},
 };
-use case::CaseView;
 
 /// List the lemmas behind the mapping algorithms, or check them in every case within a bound
 ///
@@ -66,24 +62,11 @@ pub(super) struct ProofsArguments {
     /// Print the one case that these choices make: numbers, separated by commas
     #[arg(long, value_name = "NUMBERS", requires = "run", num_args = 0..=1, value_delimiter = ',')]
     choices: Option<Vec<u8>>,
-    /// The engine whose bound applies to --choices: exhaustive or sampled
-    #[arg(long, default_value = "exhaustive", hide_possible_values = true, requires = "choices")]
-    engine: Engine,
     /// Print one JSON object a line; a list or a check ends with the totals
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     ci: CiOptions,
-}
-
-/// An engine, with its bound.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Engine {
-    /// Every case within a bound
-    Exhaustive,
-    /// Random cases within a larger bound
-    Sampled,
 }
 
 /// The name for every lemma.
@@ -102,154 +85,91 @@ impl ProofsArguments {
         theorems: &[Theorem],
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
-        let find = |name: &String| find_lemma(name, lemmas, theorems);
+        let mut chosen: Vec<&Lemma> = Vec::new();
         match (&self.choices, self.run.as_slice()) {
-            (None, []) => self.list(lemmas, theorems, out).map(|()| Outcome::Holds),
-            (None, names) => {
-                let mut chosen: Vec<&Lemma> = Vec::new();
-                for name in names {
-                    let named = if name == ALL { lemmas.to_vec() } else { vec![find(name)?] };
-                    let is_new = |lemma: &&Lemma| chosen.iter().all(|one| one.name != lemma.name);
-                    let new: Vec<_> = named.into_iter().filter(is_new).collect();
-                    chosen.extend(new);
-                }
-                self.check(&chosen, out)
+            (None, []) => return self.list(lemmas, theorems, out).map(|()| Outcome::Holds),
+            (Some(choices), [name]) if name != ALL => {
+                return case::print(find_lemma(name, lemmas, theorems)?, choices, self.json, out);
             }
-            (Some(choices), [name]) if name != ALL => self.print_case(find(name)?, choices, out),
             (Some(_), _) => {
                 let cause = "choices make a case of one lemma; choose it with one --run";
-                Err(CliError::at("--choices", cause))
+                return Err(CliError::at("--choices", cause));
+            }
+            (None, names) => {
+                for name in names {
+                    let lemma = find_lemma(name, lemmas, theorems);
+                    let named = if name == ALL { lemmas.to_vec() } else { vec![lemma?] };
+                    chosen.extend(named);
+                }
             }
         }
+        let mut names = BTreeSet::new();
+        chosen.retain(|lemma| names.insert(lemma.name));
+        self.check(&chosen, out)
     }
 
-    /// Checks lemmas, each in every case within its bound.
+    /// Checks lemmas, each in every case within its bound. Prints the cases in which lemmas fail, and the totals.
     fn check(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, CliError> {
-        let longest = |texts: Vec<String>| texts.iter().map(String::len).max().unwrap_or_default();
-        let names = longest(lemmas.iter().map(|lemma| lemma.name.to_owned()).collect());
-        let numbers = longest(lemmas.iter().map(|l| in_cases(l.exhaustive.cases)).collect());
+        let names = lemmas.iter().map(|lemma| lemma.name.len()).max().unwrap_or_default();
+        let numbers = lemmas.iter().map(|lemma| in_cases(lemma.exhaustive.cases).len());
+        let numbers = numbers.max().unwrap_or_default();
         let mut checked = Vec::new();
-        for &lemma in lemmas {
+        for lemma in lemmas {
             let progress = Progress::new(lemma.name, "cases")?;
-            let result = CheckedLemma::new(lemma, &progress)?;
+            let result = CheckedLemma::new(lemma, &progress);
             progress.finish();
             if self.json {
-                print_line(out, "check", &result)?;
+                print_line(out, "check", &result.json())?;
             } else {
                 let (name, seconds, number) = (lemma.name, result.seconds, in_cases(result.cases));
-                let word = match result.outcome {
-                    Outcome::Holds => "holds",
-                    Outcome::Violated => "fails",
-                    Outcome::Incomplete => "interrupted",
-                };
+                let word = result.in_words();
                 writeln!(out, "{name:names$}  {number:>numbers$}  {seconds:>6.2} s  {word}")?;
             }
             out.flush()?;
-            let interrupted = result.interrupted;
-            checked.push((lemma, result));
-            if interrupted {
+            let is_stopped = result.outcome == Outcome::Incomplete;
+            checked.push(result);
+            if is_stopped {
                 break;
             }
         }
-        let outcome = self.print_end(lemmas.len(), &checked, out)?;
-        let cases: Vec<_> = checked.iter().map(|(lemma, result)| result.ci_case(lemma)).collect();
+        for result in checked.iter().filter(|it| it.outcome == Outcome::Violated) {
+            result.print_failure(self.json, out)?;
+        }
+        let outcome = self.print_totals(lemmas.len(), &checked, out)?;
+        let cases: Vec<_> = checked.iter().map(CheckedLemma::ci_case).collect();
         self.ci.write("proofs", &cases)?;
         Ok(outcome)
     }
 
-    /// Prints the cases in which lemmas fail, and the totals.
-    fn print_end(
+    fn print_totals(
         &self,
         lemmas: usize,
-        checked: &[(&Lemma, CheckedLemma)],
+        checked: &[CheckedLemma],
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
-        for (lemma, result) in checked {
-            if !self.json && result.outcome == Outcome::Violated {
-                writeln!(out)?;
-            }
-            if let Some(choices) = &result.choices {
-                self.print_case(lemma, choices, out)?;
-            }
-            if let (Some(pinned), false) = (result.pinned, self.json) {
-                let [found, pinned] = [result.cases, pinned].map(in_cases);
-                let cause = format!("expected {pinned} within its bound, found {found}");
-                print_head(out, lemma.name, lemma.sentence, Some(&cause))?;
-            }
-        }
-        let with = |outcome| checked.iter().filter(move |(_, result)| result.outcome == outcome);
-        let cases = with(Outcome::Holds).chain(with(Outcome::Incomplete));
-        let cases: u64 = cases.map(|(_, result)| result.cases).sum();
-        let worst = [Outcome::Violated, Outcome::Incomplete];
-        let worst = worst.into_iter().find(|&outcome| with(outcome).next().is_some());
-        let (outcome, verdict) = match worst {
-            Some(Outcome::Violated) => (Outcome::Violated, "violated"),
-            Some(_) => (Outcome::Incomplete, "incomplete, interrupted"),
-            None => (Outcome::Holds, "holds"),
+        let count = |outcome| checked.iter().filter(|it| it.outcome == outcome).count();
+        let sound = checked.iter().filter(|it| it.outcome != Outcome::Violated);
+        let cases: u64 = sound.map(|result| result.cases).sum();
+        let (outcome, verdict, word) = match [Outcome::Violated, Outcome::Incomplete].map(count) {
+            [0, 0] => (Outcome::Holds, "holds", ""),
+            [0, _] => (Outcome::Incomplete, "incomplete, interrupted", " held"),
+            [_, _] => (Outcome::Violated, "violated", " held"),
         };
-        let (held, not_checked) = (with(Outcome::Holds).count(), lemmas - checked.len());
+        let (held, not_checked) = (count(Outcome::Holds), lemmas - checked.len());
         if self.json {
             let line = json!({
                 "lemmas": lemmas, "held": held, "not_checked": not_checked, "cases": cases,
-                "seconds": checked.iter().map(|(_, result)| result.seconds).sum::<f64>(),
+                "seconds": checked.iter().map(|result| result.seconds).sum::<f64>(),
                 "interrupted": outcome == Outcome::Incomplete, "verdict": outcome.verdict(),
                 "holds": outcome == Outcome::Holds,
             });
             print_line(out, "checks", &line)?;
             return Ok(outcome);
         }
-        let hold = if outcome == Outcome::Holds { "" } else { " held" };
         let left =
             if not_checked > 0 { format!("; {not_checked} not checked") } else { String::new() };
         let (lemmas, cases) = (counted(lemmas, "lemma"), in_cases(cases));
-        writeln!(out, "\n{verdict}: {held} of {lemmas}{hold}, {cases}{left}")?;
-        Ok(outcome)
-    }
-
-    /// Prints the case of these choices, and returns the outcome. A case that the lemma excludes is incomplete.
-    fn print_case(
-        &self,
-        lemma: &Lemma,
-        choices: &[u8],
-        out: &mut dyn Write,
-    ) -> Result<Outcome, CliError> {
-        let refused =
-            |option, cause: String| CliError::at(option, format!("{}{cause}", lemma.name));
-        let (replay, engine) = match (self.engine, lemma.sampled) {
-            (Engine::Exhaustive, _) => (lemma.exhaustive.replay, ""),
-            (Engine::Sampled, Some(sampled)) => (sampled.replay, " --engine sampled"),
-            (Engine::Sampled, None) => {
-                return Err(refused("--engine", " is not sampled".to_owned()));
-            }
-        };
-        let made = CaseReplay::show(replay, choices)
-            .map_err(|misfit| refused("--choices", format!(": {misfit}")))?;
-        let (outcome, word, verdict, claim) = match made.case {
-            Ok(()) => (Outcome::Holds, "holds", "holds: the lemma holds in this case", None),
-            Err(Stop::Fails(claim)) => {
-                (Outcome::Violated, "fails", "violated: the lemma fails in this case", Some(claim))
-            }
-            Err(Stop::Excluded) => {
-                (Outcome::Incomplete, "excluded", "incomplete: the lemma excludes this case", None)
-            }
-        };
-        let view = CaseView::new(lemma.name, &made.exhibits)?;
-        if self.json {
-            let line = json!({
-                "lemma": lemma.name, "engine": self.engine, "choices": choices, "verdict": word,
-                "holds": outcome == Outcome::Holds, "claim": claim, "worlds": view.worlds,
-                "walks": view.walks, "values": view.values,
-            });
-            print_line(out, "case", &line)?;
-            return Ok(outcome);
-        }
-        let cause = claim.map(|claim| format!("it is not true that {claim}"));
-        print_head(out, lemma.name, lemma.sentence, cause.as_deref())?;
-        let (name, choices) = (lemma.name, listed(choices));
-        let again = format!("toposlam proofs --run {name}{engine} --choices {choices}");
-        print_command(out, "  again: ", again.trim_end())?;
-        out.write_all(&view.text)?;
-        writeln!(out, "\n{verdict}")?;
+        writeln!(out, "\n{verdict}: {held} of {lemmas}{word}, {cases}{left}")?;
         Ok(outcome)
     }
 
@@ -292,11 +212,11 @@ impl ProofsArguments {
             writeln!(out)?;
         }
         print_labelled(out, ENGINES)?;
-        let [lemmas, theorems] =
-            [counted(lemmas.len(), "lemma"), counted(theorems.len(), "theorem")];
-        writeln!(out)?;
+        let (lemmas, theorems) =
+            (counted(lemmas.len(), "lemma"), counted(theorems.len(), "theorem"));
         let totals =
             format!("{lemmas}, {} within bounds; {theorems} for {EVERY_WORLD}", in_cases(cases));
+        writeln!(out)?;
         Ok(print_paragraph(out, &totals)?)
     }
 }
@@ -324,84 +244,87 @@ fn find_lemma<'l>(
     Err(CliError::at("--run", format!("{cause}:\n  {}", lines.join("\n  "))))
 }
 
-/// The result of the check of a lemma: a line of `--json`.
-#[derive(Serialize)]
-struct CheckedLemma {
-    #[serde(skip)]
-    outcome: Outcome,
-    lemma: &'static str,
+/// The result of the check of a lemma.
+struct CheckedLemma<'l> {
+    lemma: &'l Lemma,
     /// Those in which it holds, before the first one in which it fails.
     cases: u64,
+    outcome: Outcome,
+    failure: Option<LemmaFailure>,
     seconds: f64,
-    verdict: &'static str,
-    holds: bool,
-    choices: Option<Vec<u8>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    claim: Option<&'static str>,
-    /// The expected number of cases, if another number was found.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pinned: Option<u64>,
-    interrupted: bool,
 }
 
-impl CheckedLemma {
-    /// The result for CI systems.
-    fn ci_case(&self, lemma: &Lemma) -> CiCase {
-        let ended = match self.outcome {
+impl<'l> CheckedLemma<'l> {
+    fn new(lemma: &'l Lemma, watch: &dyn Watch) -> Self {
+        let start = Instant::now();
+        let mut before = 0;
+        let end = lemma.check(&mut |so_far| {
+            if before == 0 {
+                watch.parts((lemma.exhaustive.cases / so_far) as usize);
+            }
+            watch.part_done(so_far - before);
+            before = so_far;
+            if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        let (cases, outcome) = match &end {
+            Ok(all) => (*all, Outcome::Holds),
+            Err(LemmaFailure::Case(case)) => (case.cases, Outcome::Violated),
+            Err(LemmaFailure::Cases { found, .. }) => (*found, Outcome::Violated),
+            Err(LemmaFailure::Stopped(so_far)) => (*so_far, Outcome::Incomplete),
+        };
+        let seconds = start.elapsed().as_secs_f64();
+        Self { lemma, cases, outcome, failure: end.err(), seconds }
+    }
+
+    fn in_words(&self) -> &'static str {
+        match self.outcome {
             Outcome::Holds => "holds",
             Outcome::Violated => "fails",
             Outcome::Incomplete => "interrupted",
-        };
-        let message = format!("{ended} after {}", in_cases(self.cases));
-        CiCase { name: lemma.name.to_owned(), outcome: self.outcome, message, file: None }
+        }
     }
 
-    /// Checks a lemma on a thread of its own, so that an interrupt need not wait for the next case.
-    fn new(lemma: &Lemma, watch: &dyn Watch) -> Result<Self, CliError> {
-        const INTERVAL: Duration = Duration::from_millis(50);
-        let (start, copy) = (Instant::now(), *lemma);
-        let (so_far, number) = mpsc::channel();
-        // After an interrupt there is no receiver.
-        let work = move || copy.check(&mut |cases| so_far.send(cases).unwrap_or_default());
-        let checking = thread::Builder::new().spawn(work);
-        let checking = checking.map_err(|error| CliError::at(lemma.name, error))?;
-        let mut cases = 0;
-        let mut end = None;
-        while end.is_none() && !watch.stop() {
-            match number.recv_timeout(INTERVAL) {
-                Ok(more) => {
-                    if cases == 0 {
-                        watch.parts((lemma.exhaustive.cases / more.max(1)) as usize);
-                    }
-                    watch.part_done(more - cases);
-                    cases = more;
-                }
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => end = Some(()),
+    fn json(&self) -> Value {
+        let Self { lemma, cases, outcome, failure, seconds } = self;
+        let mut line = json!({
+            "lemma": lemma.name, "cases": cases, "seconds": seconds, "verdict": outcome.verdict(),
+            "holds": *outcome == Outcome::Holds, "choices": null,
+        });
+        match failure {
+            Some(LemmaFailure::Case(case)) => {
+                line["choices"] = json!(case.choices);
+                line["claim"] = json!(case.claim);
             }
+            Some(LemmaFailure::Cases { pinned, .. }) => line["pinned"] = json!(pinned),
+            Some(LemmaFailure::Stopped(_)) | None => {}
         }
-        let end = end.map(|()| checking.join()).transpose();
-        let end = end.map_err(|_| CliError::at(lemma.name, "the check ended without a result"))?;
-        let (outcome, cases, failed, pinned) = match end {
-            None => (Outcome::Incomplete, cases, None, None),
-            Some(Ok(all)) => (Outcome::Holds, all, None, None),
-            Some(Err(LemmaFailure::Case(it))) => (Outcome::Violated, it.cases, Some(it), None),
-            Some(Err(LemmaFailure::Cases { pinned, found })) => {
-                (Outcome::Violated, found, None, Some(pinned))
+        line["interrupted"] = json!(*outcome == Outcome::Incomplete);
+        line
+    }
+
+    /// Prints the case in which it fails, or that there is another number of cases.
+    fn print_failure(&self, json: bool, out: &mut dyn Write) -> Result<(), CliError> {
+        if !json {
+            writeln!(out)?;
+        }
+        match &self.failure {
+            Some(LemmaFailure::Case(case)) => {
+                case::print(self.lemma, &case.choices, json, out)?;
             }
-        };
-        Ok(Self {
-            outcome,
-            lemma: lemma.name,
-            cases,
-            seconds: start.elapsed().as_secs_f64(),
-            verdict: outcome.verdict(),
-            holds: outcome == Outcome::Holds,
-            claim: failed.as_ref().map(|failed| failed.claim),
-            choices: failed.map(|failed| failed.choices),
-            pinned,
-            interrupted: outcome == Outcome::Incomplete,
-        })
+            Some(LemmaFailure::Cases { pinned, found }) if !json => {
+                let [found, pinned] = [*found, *pinned].map(in_cases);
+                let cause = format!("expected {pinned} within its bound, found {found}");
+                print_head(out, self.lemma.name, self.lemma.sentence, Some(&cause))?;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The result for CI systems.
+    fn ci_case(&self) -> CiCase {
+        let message = format!("{} after {}", self.in_words(), in_cases(self.cases));
+        CiCase { name: self.lemma.name.to_owned(), outcome: self.outcome, message, file: None }
     }
 }
 

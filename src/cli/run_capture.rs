@@ -26,7 +26,7 @@ use super::CliError;
 use crate::{
     cli::progress::Progress,
     run_page_data::{MappingStep, PageArrival, PageFrame, RunPageData},
-    story::{PrintedStory, Story, StoryDetail},
+    story::{PrintedStory, Story},
 };
 
 /// Observes a run. Of a live robot it keeps no frames: their true poses are not known.
@@ -59,7 +59,7 @@ impl<'o> RunCapture<'o> {
         let is_shown = out.is_some() && io::stdout().is_terminal();
         let progress = Progress::endless("exploring", frame_kind)?;
         let progress = if is_shown { progress.hidden() } else { progress };
-        let mut story = PrintedStory::new(Story::with_head(head, StoryDetail::default()), out);
+        let mut story = PrintedStory::new(Story::with_head(head), out);
         story.print();
         Ok(Self {
             story,

@@ -10,7 +10,7 @@ use toposlam_model::{
     mapping::{MappingMethod, RecoveryConfig},
 };
 use toposlam_robot::{
-    budget::RunBudget,
+    budget::{BudgetLimit, RunBudget},
     run_settings::{DEFAULT_MAX_DARTS, RunSettings},
 };
 use toposlam_vision::{
@@ -34,15 +34,10 @@ pub(super) struct RunOptions {
     /// With --recover: a map that is complete but for blocked doors is enough for exit code 0
     #[arg(long, requires = "recover")]
     pub(super) allow_blocked: bool,
-    /// Return to the marker before this number of moves is over
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    max_moves: Option<u64>,
-    /// Return to the marker before this time is over, in minutes of the robot's clock
-    #[arg(long, value_name = "MINUTES", allow_hyphen_values = true, value_parser = positive)]
-    max_minutes: Option<f64>,
-    /// Return to the marker before the battery is empty: the part of it that one metre takes, as in 0.001
-    #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = share)]
-    battery_per_metre: Option<f64>,
+    /// Return to the marker before this is over: moves, minutes of the robot's clock, or metres as far as the
+    /// battery lasts, as in 25moves, 20min or 1000m (repeatable)
+    #[arg(long, value_name = "LIMIT", allow_hyphen_values = true, value_parser = limit)]
+    budget: Vec<BudgetLimit>,
     /// With --recover: go on from the log of an earlier run, .mcap, wherever the robot stands (repeatable)
     #[arg(long, value_name = "LOG", requires = "recover")]
     resume: Vec<PathBuf>,
@@ -60,14 +55,18 @@ pub(super) struct RunOptions {
     pub(super) json: bool,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
-    number.ok_or_else(|| "expected a number greater than 0".to_owned())
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share <= 1.0);
-    share.ok_or_else(|| "expected a number greater than 0, and at most 1".to_owned())
+/// Parses a limit of what a run may spend: a number and its unit.
+fn limit(text: &str) -> Result<BudgetLimit, String> {
+    let unit = text.trim_start_matches(|letter: char| "0123456789.".contains(letter));
+    let number = text.strip_suffix(unit).unwrap_or_default();
+    let real = || number.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    let limit = match unit {
+        "moves" => number.parse().ok().filter(|&moves| moves > 0).map(BudgetLimit::Moves),
+        "min" => real().map(|minutes| BudgetLimit::Time(60.0 * minutes)),
+        "m" => real().map(BudgetLimit::Way),
+        _ => None,
+    };
+    limit.ok_or_else(|| "write a number above 0 with its unit: moves, min or m".to_owned())
 }
 
 impl RunOptions {
@@ -83,11 +82,14 @@ impl RunOptions {
             }),
             method @ MappingMethod::By { .. } => method,
         };
-        let budget = RunBudget {
-            moves: self.max_moves,
-            seconds: self.max_minutes.map(|minutes| 60.0 * minutes),
-            metres: self.battery_per_metre.map(|share| 1.0 / share),
-        };
+        let mut budget = RunBudget::default();
+        for limit in &self.budget {
+            match *limit {
+                BudgetLimit::Moves(moves) => budget.moves = Some(moves),
+                BudgetLimit::Time(seconds) => budget.seconds = Some(seconds),
+                BudgetLimit::Way(metres) => budget.metres = Some(metres),
+            }
+        }
         let earlier = earlier_walks_of(&self.resume, world_hash)?;
         Ok(RunSettings { budget, earlier, ..RunSettings::new(method, self.max_darts) })
     }
@@ -156,7 +158,7 @@ impl RunOptions {
 pub(super) struct GivenOptions(Vec<(String, Vec<String>)>);
 
 /// The options that change no run.
-const OUTPUTS: [&str; 8] = ["allow-blocked", "color", "html", "json", "log", "map", "quiet", "svg"];
+const OUTPUTS: [&str; 7] = ["allow-blocked", "html", "json", "log", "map", "quiet", "svg"];
 /// The options that are repeated although they are not given: their defaults may change.
 const WITH_DEFAULTS: [&str; 2] = ["algorithm", "seed"];
 

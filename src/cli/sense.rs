@@ -78,9 +78,6 @@ pub(super) struct SenseArguments {
     /// Print one JSON object per image or scan
     #[arg(long)]
     json: bool,
-    /// Output file: .txt, .json or .jsonl [default: standard output]
-    #[arg(short, long, value_name = "FILE")]
-    out: Option<PathBuf>,
 }
 
 /// What `--json` prints of an image.
@@ -94,9 +91,6 @@ struct ImageReport {
 impl SenseArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         watch_for_interrupt()?;
-        if let Some(path) = &self.out {
-            output::check_place(path, &["json", "jsonl", "txt"])?;
-        }
         self.check_options()?;
         input::register(&self.files)?;
         let camera = self.calibration.as_deref().map(input::read_camera).transpose()?;
@@ -109,16 +103,7 @@ impl SenseArguments {
         let mut eye = camera
             .zip(colours.as_ref())
             .map(|(camera, colours)| (camera, Sensor::new(camera, colours)));
-        let Some(path) = &self.out else {
-            return self.sense_all(&mut eye, &names, out)?.worst();
-        };
-        let mut text = Vec::new();
-        let inputs = self.sense_all(&mut eye, &names, &mut text)?;
-        // Without any scene there is nothing to write.
-        if !text.is_empty() {
-            output::write_whole(path, &text)?;
-        }
-        inputs.worst()
+        self.sense_all(&mut eye, &names, out)?.worst()
     }
 
     /// Returns an error for an option that is missing, or has no effect.

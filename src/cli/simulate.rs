@@ -120,16 +120,14 @@ const OF_IMAGES: [&str; 6] = ["calibration", "size", "colours", "look", "effects
 
 /// Options that need a run; --ros serves the robot instead. All are named: clap drops the requirement of an option
 /// that conflicts.
-const NOT_DRIVEN: [&str; 16] = [
+const NOT_DRIVEN: [&str; 14] = [
     "algorithm",
     "audit",
     "recover",
     "retry_blocked",
     "allow_blocked",
     "resume",
-    "max_moves",
-    "max_minutes",
-    "battery_per_metre",
+    "budget",
     "by_scene",
     "log",
     "svg",
@@ -432,7 +430,7 @@ Examples:
   toposlam simulate worlds/shape-6.toml --sensor laser --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-8.toml --by-scene --recover --fault carried@80
-  toposlam simulate worlds/shape-8.toml --by-scene --recover --max-moves 15 \\
+  toposlam simulate worlds/shape-8.toml --by-scene --recover --budget 15moves \\
     --log part.mcap
   toposlam simulate worlds/shape-8.toml --by-scene --recover --resume part.mcap
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5

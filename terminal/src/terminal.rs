@@ -1,11 +1,10 @@
 //! Standard error: remarks, errors, and their colours.
 //!
-//! `--quiet` leaves out remarks and progress. `--color` decides on colours, or else the environment
-//! (`NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`) and whether standard error is a terminal. On a terminal the lines are
-//! wrapped; in a file or a pipe each remark and each error stays on one line.
+//! `--quiet` leaves out remarks and progress. The environment (`NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`) decides on
+//! colours, and whether standard error is a terminal. On a terminal the lines are wrapped; in a file or a pipe each remark
+//! and each error stays on one line.
 
 use std::{
-    ffi::OsString,
     fmt::Display,
     io::{self, Write},
     sync::{
@@ -15,7 +14,7 @@ use std::{
 };
 
 use anstream::AutoStream;
-use clap::{ColorChoice, ValueEnum, builder::Styles};
+use clap::builder::Styles;
 
 use toposlam_draw::text::{readable, wrapped};
 
@@ -25,16 +24,6 @@ pub struct TerminalOptions {
     /// Print no progress and no remarks on standard error, only errors
     #[arg(short, long, global = true, display_order = 900)]
     quiet: bool,
-    /// Use colours in help and errors: auto, always or never
-    #[arg(
-        long,
-        global = true,
-        value_name = "WHEN",
-        default_value = "auto",
-        hide_possible_values = true,
-        display_order = 901
-    )]
-    color: ColorChoice,
 }
 
 static QUIET: AtomicBool = AtomicBool::new(false);
@@ -42,30 +31,7 @@ static QUIET: AtomicBool = AtomicBool::new(false);
 impl TerminalOptions {
     pub fn apply(&self) {
         QUIET.store(self.quiet, Ordering::Relaxed);
-        match self.color {
-            ColorChoice::Auto => anstream::ColorChoice::Auto,
-            ColorChoice::Always => anstream::ColorChoice::Always,
-            ColorChoice::Never => anstream::ColorChoice::Never,
-        }
-        .write_global();
     }
-}
-
-/// The value of `--color` among arguments that are not parsed yet: their errors have colours, too.
-pub fn color_choice(arguments: impl IntoIterator<Item = OsString>) -> ColorChoice {
-    let mut words = arguments.into_iter().take_while(|word| word != "--");
-    let mut choice = ColorChoice::Auto;
-    while let Some(word) = words.next() {
-        let word = word.to_string_lossy();
-        let value = match word.strip_prefix("--color") {
-            Some("") => words.next().map(|value| value.to_string_lossy().into_owned()),
-            Some(rest) => rest.strip_prefix('=').map(str::to_owned),
-            None => None,
-        };
-        let value = value.and_then(|value| ColorChoice::from_str(&value, false).ok());
-        choice = value.unwrap_or(choice);
-    }
-    choice
 }
 
 pub fn is_quiet() -> bool {
@@ -123,16 +89,5 @@ mod tests {
         let lines = message_lines(Some(20), message);
         let expected = "run.txt: this is not\na log\n  known are bags and\n  MCAP files\n";
         assert_eq!(lines, expected);
-    }
-
-    #[test]
-    fn the_choice_of_colours_is_found_before_the_arguments_are_parsed() {
-        let choice = |words: &str| color_choice(words.split(' ').map(OsString::from));
-        assert_eq!(choice("toposlam check"), ColorChoice::Auto);
-        assert_eq!(choice("toposlam --color never chekc"), ColorChoice::Never);
-        assert_eq!(choice("toposlam chekc --color=always"), ColorChoice::Always);
-        assert_eq!(choice("toposlam check --color purple"), ColorChoice::Auto);
-        assert_eq!(choice("toposlam check --color"), ColorChoice::Auto);
-        assert_eq!(choice("toposlam check -- --color never"), ColorChoice::Auto);
     }
 }

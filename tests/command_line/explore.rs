@@ -137,7 +137,7 @@ fn from_each_start_of_shape_6_the_map_is_right_and_from_some_it_can_cost_9_moves
 
 #[test]
 fn a_search_of_all_choices_stops_at_its_limit_and_at_ctrl_c() {
-    let petersen = "explore worlds/petersen.toml --choices all --max-states 1000";
+    let petersen = "explore worlds/petersen.toml --choices all=1000";
     let line = Scratch::new("explore_bounds").last(petersen, 3);
     let begun = ["states", "states_within_rounds"].map(|key| line[key].as_u64().unwrap());
     assert!(begun[1] > 0 && begun.iter().sum::<u64>() <= 1000, "{begun:?}");

@@ -127,30 +127,6 @@ fn the_lines_of_a_conversation_fit_their_schemas() {
     }
 }
 
-/// The explorer remembers its earlier runs, and ends its process on every 50th.
-#[test]
-fn the_result_does_not_depend_on_the_number_of_processes() {
-    let scratch = Scratch::new("explorer_processes");
-    let text = "n=0\nwhile read line; do n=$((n + 1))\n\
-                if [ $((n % 50)) = 0 ]; then echo '{\"door\":99}'; else echo '{\"give_up\":\"no\"}'; fi\n\
-                done\n";
-    let some = scratch.script(text);
-    // Of three batches with 256 and a few starts, the first two have five such runs each.
-    for (restarts, ended) in [(7, 7), (1000, 13)] {
-        let [one, four] = [1, 4].map(|threads| {
-            let options = format!("--keep-going --threads {threads} --restarts {restarts}");
-            scratch.check(&some, &format!("--edges 3..=4 {options}"), 1)
-        });
-        assert_eq!(one, four);
-        let fields = json!([
-            { "causes": {"gave-up": 73, "no-such-door": 1} },
-            { "stopped": restarts == 7, "causes.no-such-door": ended },
-        ]);
-        has(&one.clone().into(), &fields, text);
-        assert_eq!(one[1]["starts"] == 706, restarts == 1000, "{}", one[1]);
-    }
-}
-
 /// Whether a process of this machine runs that is not a zombie.
 #[cfg(target_os = "linux")]
 fn is_running(process: &str) -> bool {

@@ -52,4 +52,7 @@ macro_rules! files {
     };
 }
 
-files! { calibrate check compare draw explore explorer info input lines names safeguards shards simulate train worlds }
+files! {
+    calibrate check compare conform draw explore explorer info input laser lines names options page rerun safeguards shards simulate
+    train walks worlds
+}

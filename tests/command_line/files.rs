@@ -24,7 +24,6 @@ camera calibrate --out: c.toml camera calibrate IMAGE --initial IN --out OUT
 camera calibrate --picture: i.png camera calibrate IN --picture OUT | i.png camera calibrate IMAGE IN --picture OUT
 camera calibrate --mask-out: i.png camera calibrate IN --out NEW.toml --mask-out OUT
 camera train --out: c.toml camera train --images DIR --labels DIR --calibration IN --out OUT
-sense --out: c.txt sense IMAGE --calibration IN --colours COLOURS --out OUT | c.txt sense IMAGE --calibration CALIBRATION --colours IN --out OUT | i.txt sense IN --calibration CALIBRATION --colours COLOURS --out OUT
 info --write-topics: l.toml info IN --write-topics OUT
 conform --html: l.html conform IN --html OUT | w.html conform LOG --world IN --html OUT | m.html conform LOG --topics IN --html OUT
 conform --minimise: l.mcap conform IN --minimise OUT | w.mcap conform LOG --world IN --minimise OUT

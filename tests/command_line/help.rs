@@ -57,7 +57,7 @@ fn no_line_is_wider_than_80_columns() {
     }
     for line in [
         "check --marker movable --class corridor",
-        "explore worlds/building-25.toml --full --doors",
+        "explore worlds/building-25.toml --story",
         "explore worlds/building-25.toml --marker movable",
         "compare worlds/cycle-3.toml worlds/cycle-4.toml --marker two-distinct",
         "proofs",
@@ -114,7 +114,7 @@ fn the_exit_code_without_a_reader() {
         ("", 0, ""),
         ("proofs --json", 0, ""),
         ("draw worlds/building-25.toml", 0, ""),
-        ("explore worlds/building-25.toml --full", 0, ""),
+        ("explore worlds/building-25.toml --story", 0, ""),
         ("explore worlds/building-25.toml --json", 0, ""),
         ("compare worlds/cycle-3.toml worlds/cycle-4.toml --marker none", 0, ""),
         ("info fuzz/corpus/mcap/of-a-run", 0, ""),

@@ -1,22 +1,19 @@
-//! Robots with a laser scanner: `toposlam simulate --sensor`.
+//! Logs with laser scans: messages off the clock, and the log of a real robot. Most facts are in `tests/facts/laser.txt`.
+
+use std::{
+    env,
+    path::{Path, PathBuf},
+};
 
 use mcap::Message;
 use serde_json::{Value, json};
 
-use super::{Scratch, containers::rewritten, has, objects, stdout};
+use super::{Scratch, containers::rewritten, flat, has, objects, stdout};
 
-const PLAN: &str = "worlds/laser/long-8.toml";
 const LASER: &str = "--events laser --driver anyone --marker none";
 
 /// A time in nanoseconds that is far from all others: the year 2106.
 const FAR: u64 = 4_294_967_000_000_000_000;
-
-/// The log of a run in the plan, as `run.mcap`.
-fn logged(name: &str) -> Scratch {
-    let scratch = Scratch::new(name);
-    scratch.out(&format!("simulate {PLAN} --sensor laser --noise 0.1 --log run.mcap"), 0);
-    scratch
-}
 
 /// What `conform` prints of a log, whatever the verdict.
 fn conform(scratch: &Scratch, log: &str) -> Value {
@@ -24,38 +21,14 @@ fn conform(scratch: &Scratch, log: &str) -> Value {
     objects(&stdout(&output)).pop().unwrap_or_else(|| panic!("{output:?}"))
 }
 
-#[test]
-fn a_robot_that_has_only_a_laser_scanner_maps_a_plan_and_its_log_conforms() {
-    let scratch = logged("simulate_laser");
-    scratch.out(&format!("conform run.mcap --world {PLAN}"), 0);
-    let topics = scratch.out("info run.mcap", 0);
-    assert!(topics.contains("/scan") && !topics.contains("/camera"), "{topics}");
-    // To a laser scanner corners are no junctions: shape 8 is two vertices joined by three edges.
-    let by_scans = format!("conform run.mcap {LASER} --start any --world");
-    let text = scratch.out(&format!("{by_scans} worlds/theta-plane.toml"), 0);
-    // This scanner looks all around.
-    assert!(!text.contains("hardly"), "{text}");
-    // A cross is another world.
-    let output = scratch.run(&format!("{by_scans} worlds/figure-1a.toml"));
-    assert_ne!(output.status.code(), Some(2), "{output:?}");
-}
-
-/// A robot leaves a junction by an arm that its scans show coarsely. That is no fault of the robot.
-#[test]
-fn a_log_of_scans_does_not_accuse_a_robot_that_mapped_its_plan() {
-    let scratch = Scratch::new("laser_not_accused");
-    for seed in [0, 1] {
-        scratch.out(&format!("simulate {PLAN} --sensor laser --seed {seed} --log run.mcap"), 0);
-        scratch.out(&format!("conform run.mcap {LASER}"), 0);
-    }
-}
-
-/// The recorder of an MCAP file, a database of rosbag2 or a ROS 1 bag has a clock.
+/// The recorder of an MCAP file or a database of rosbag2 has a clock.
 #[test]
 fn messages_off_the_clock_are_skipped_and_counted() {
-    let scratch = logged("laser_containers");
+    let scratch = Scratch::new("laser_containers");
+    let run = "simulate worlds/laser/long-8.toml --sensor laser --noise 0.1 --log run.mcap";
+    scratch.out(run, 0);
     let log = scratch.path("run.mcap");
-    for (file, format) in [("changed.mcap", "mcap"), ("run.db3", "db3"), ("run.bag", "bag")] {
+    for (file, format) in [("changed.mcap", "mcap"), ("run.db3", "db3")] {
         if format == "db3" && !cfg!(feature = "sqlite") {
             continue;
         }
@@ -117,18 +90,42 @@ fn messages_off_the_clock_are_skipped_and_counted() {
     assert!(message.contains("the log does not have what this needs"), "{message}");
 }
 
+/// The logs of two real robots, if they exist; `TOPOSLAM_CARMEN_LOGS` names their folder.
+fn carmen() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/carmen");
+    let folder = env::var_os("TOPOSLAM_CARMEN_LOGS").map_or(beside, PathBuf::from);
+    let found = folder.join("aces.log.gz").is_file();
+    if !found {
+        eprintln!("skipped: there are no CARMEN logs in {}", folder.display());
+    }
+    found.then_some(folder)
+}
+
+/// With an undirected marker at the crossing the log of a real building does not distinguish the wheel in the
+/// plane from the one on the torus: the paper's Figure 1. The smallest building on one floor that explains the
+/// log is the wheel.
 #[test]
-fn a_robot_with_both_sensors_drives_by_its_camera_and_records_scans() {
-    let scratch = Scratch::new("simulate_both");
-    scratch.write("scanner.toml", "field_of_view = 180.0\nnoise = 0.0\n");
-    let both = "--by-scene --sensor both --scanner scanner.toml --log both.mcap";
-    let text = scratch.out(&format!("simulate worlds/shape-6.toml {both}"), 0);
-    assert!(text.contains("\n  scenes            "), "{text}");
-    let object = scratch.last("info both.mcap", 0);
-    let count = |name: &str| {
-        let topics = object["topics"].as_array().unwrap();
-        let topic = topics.iter().find(|topic| topic["name"] == name);
-        topic.unwrap_or_else(|| panic!("{object}"))["messages"].clone()
-    };
-    assert_eq!(count("/scan"), count("/toposlam/scene"));
+fn a_real_building_and_its_twin_on_the_torus_explain_the_same_log() {
+    let Some(logs) = carmen() else { return };
+    let scratch = Scratch::new("real_twin");
+    scratch.write("hub.toml", "[marker]\nat = [-0.8, -18.6]\n");
+    let log = logs.join("aces.log.gz");
+    let conform =
+        format!("conform {} --events laser --driver anyone --assume-marker", log.display());
+    let undirected = format!("{conform} --marker undirected --topics hub.toml");
+    let twin = json!({ "verdict": "conforms", "twin.figure": "Figure 1(b)", "twin.genus": 1 });
+    scratch.facts(&[
+        (&format!("{undirected} --world worlds/real/aces.toml"), 0, twin.clone()),
+        (&format!("{undirected} --class planar"), 0, twin),
+        // With a directional marker there is none.
+        (
+            &format!("{conform} --world worlds/real/aces.toml"),
+            0,
+            json!({ "verdict": "conforms", "twin": null }),
+        ),
+    ]);
+    let text = scratch.out(&format!("{undirected} --class planar"), 0);
+    for part in ["Figure 1(b) of the paper", "no walk distinguishes"] {
+        assert!(flat(&text).contains(part), "{text}");
+    }
 }

@@ -28,12 +28,10 @@ mod facts;
 mod files;
 mod help;
 mod laser;
-mod laser_logs;
 mod log;
 mod names;
 mod options;
 mod proofs;
-mod rerun;
 mod sense;
 mod shards;
 mod simulate;
@@ -213,7 +211,7 @@ impl Scratch {
     }
 
     /// Checks the exit code of a command, and fields of what `--json` prints: of the last object, or, for a list, of
-    /// all objects. A text is what its error message begins with, behind `error: `.
+    /// all objects. A text is what its error message begins with, behind `error: `. `[..]` in a text is any text.
     fn fact(&self, line: &str, code: i32, expected: &Value) {
         match expected {
             Value::Null => drop(self.out(line, code)),
@@ -221,7 +219,8 @@ impl Scratch {
                 let output = self.run(line);
                 let error = stderr(&output);
                 assert_eq!(output.status.code(), Some(code), "{line}: {}{error}", stdout(&output));
-                assert!(error.starts_with(&format!("error: {message}")), "{line}: {error}");
+                let is_it = is_like(&error, &format!("error: {message}[..]"));
+                assert!(is_it, "{line}: {error} is not {message}");
                 assert!(
                     output.stdout.is_empty() && error.matches("error:").count() == 1,
                     "{error}"
@@ -262,8 +261,22 @@ fn has(found: &Value, fields: &Value, place: &str) {
                 has(found, expected, place);
             }
         }
+        Value::String(text) if text.contains("[..]") => {
+            assert!(found.as_str().is_some_and(|found| is_like(found, text)), "{place}: {found}");
+        }
         _ => assert_eq!(found, fields, "{place}"),
     }
+}
+
+/// Whether a text is this one, where `[..]` is any text.
+fn is_like(text: &str, pattern: &str) -> bool {
+    let Some((first, others)) = pattern.split_once("[..]") else { return text == pattern };
+    let (others, last) = others.rsplit_once("[..]").unwrap_or(("", others));
+    let rest = others.split("[..]").try_fold(text.strip_prefix(first), |rest, part| {
+        let (_, after) = rest?.split_once(part)?;
+        Some(Some(after))
+    });
+    rest.flatten().is_some_and(|rest| rest.ends_with(last))
 }
 
 /// The numbers that objects have by this name.

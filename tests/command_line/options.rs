@@ -1,5 +1,5 @@
-//! Options of every verb: `--version`, `--color`, `-o`, and commands and options that have another name now. `--quiet`
-//! and `-` for standard input are in `tests/facts/input.txt`.
+//! Options of every verb: `--version`, `-` for a file of colours, and Ctrl-C. Other facts are in
+//! `tests/facts/options.txt` and `tests/facts/input.txt`.
 
 use std::fs;
 
@@ -22,71 +22,6 @@ fn the_version_is_that_of_the_package_with_the_revision_of_the_build() {
     let package = version.trim_end().split('+').next().unwrap();
     assert_eq!(package, concat!("toposlam ", env!("CARGO_PKG_VERSION")));
     assert_eq!(version, scratch.out("-V", 0));
-}
-
-#[test]
-fn old_commands_and_options_work_or_are_refused_with_their_new_names() {
-    let scratch = Scratch::new("old_names");
-    let render = "render worlds/shape-6.toml --size 640x480 -o view.png";
-    for (line, message, code) in [
-        (render, "`render` is now `draw --pose=start`\n", 0),
-        (&format!("{render} --pose 0,2,90"), "`render` is now `draw --pose=start`\n", 0),
-        ("--color never calibrate --help", "", 0),
-        ("merge no.jsonl", "error: no.jsonl: ", 2),
-        ("replay no.mcap", "error: no.mcap: ", 2),
-        ("paper", "error: paper: this command is gone; see docs/paper.md\n", 2),
-    ] {
-        let output = scratch.command(line).output().unwrap();
-        let all = stderr(&output);
-        assert!(all.contains(message), "{all}");
-        assert_eq!(output.status.code(), Some(code), "{all}");
-    }
-    for (verb, rest, old, new) in [
-        ("check", "4", "--max-edges", "--edges"),
-        ("counterexample", "4", "--edges", "--max-edges"),
-        ("counterexample", "x", "--out", "--out-dir"),
-        ("conform", "30 x.mcap", "--edges", "--max-edges"),
-        ("camera calibrate", "x.toml x.png", "--start", "--initial"),
-    ] {
-        let message = scratch.error(&format!("{verb} {old} {rest}"));
-        assert!(message.starts_with(&format!("error: unexpected argument '{old}")), "{message}");
-        assert!(message.contains(new), "{message}");
-        let help = scratch.out(&format!("{verb} --help"), 0);
-        assert!(!help.contains(&format!(" {old} ")) && help.contains(new), "{help}");
-    }
-    // -o is --out or --out-dir in every verb.
-    for (verb, long) in [
-        ("counterexample", "--out-dir <DIR>"),
-        ("draw", "--out <FILE>"),
-        ("camera calibrate", "--out <FILE>"),
-        ("camera train", "--out <FILE>"),
-        ("sense", "--out <FILE>"),
-    ] {
-        let help = scratch.out(&format!("{verb} --help"), 0);
-        assert!(help.contains(&format!("-o, {long}")), "{help}");
-    }
-}
-
-#[test]
-fn colours_are_used_if_they_are_asked_for_and_not_in_a_pipe() {
-    let scratch = Scratch::new("colours");
-    for line in ["chekc", "explore missing.toml", "check --edges x"] {
-        let message = |more: &str, no_color: &str| {
-            let mut command = scratch.command(&format!("{line} {more}"));
-            stderr(&command.env("NO_COLOR", no_color).output().unwrap())
-        };
-        let plain = message("", "");
-        assert!(plain.starts_with("error: "), "{plain}");
-        assert_eq!(message("--color never", ""), plain);
-        assert_eq!(message("--color=auto", "1"), plain);
-        let coloured = message("--color always", "");
-        assert!(coloured.starts_with("\u{1b}[") && coloured.contains("error:"), "{coloured:?}");
-        assert_eq!(message("--color=always", "1"), coloured);
-    }
-    for (choice, coloured) in [("always", true), ("auto", false), ("never", false)] {
-        let help = scratch.out(&format!("check --help --color {choice}"), 0);
-        assert_eq!(help.contains('\u{1b}'), coloured, "{choice}");
-    }
 }
 
 #[test]

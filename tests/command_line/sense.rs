@@ -78,7 +78,7 @@ fn a_hallway_and_a_junction_are_reported_in_the_documented_form() {
 fn each_stage_has_a_picture_with_its_legend() {
     let scratch = scratch("sense_stages");
     render(&scratch, "words.png", "0.4,8,180");
-    let text = scratch.out(&format!("sense words.png {FILES} --stages steps"), 0);
+    scratch.out(&format!("sense words.png {FILES} --stages steps"), 0);
     let names = names_in(&scratch.path("steps"));
     let expected = ["1-classes", "2-boundary", "3-clusters", "4-lines", "5-scene", "6-image"];
     assert_eq!(names, expected.map(|step| format!("words-{step}.png")));
@@ -87,8 +87,6 @@ fn each_stage_has_a_picture_with_its_legend() {
         let square = if name.ends_with("image.png") { SIZE[1] } else { 800 };
         assert!((square + 30..square + 200).contains(&picture.height()), "{name}");
     }
-    assert_eq!(scratch.out(&format!("sense words.png {FILES} --out words.txt"), 0), "");
-    assert_eq!(scratch.text("words.txt"), text);
     // Stages of images with the same name are refused.
     render(&scratch, "words.jpg", "2,4,0");
     facts! { scratch;
@@ -155,10 +153,6 @@ fn other_files_are_refused_and_do_not_stop_the_others() {
         assert!(unread["cause"].as_str().unwrap().starts_with(cause), "{unread}");
         assert_eq!(lines, alone);
     }
-    scratch.error(&format!("sense one.png none.png other.jpg {FILES} --json --out scenes.jsonl"));
-    let mut lines = objects(&scratch.text("scenes.jsonl"));
-    lines.retain(|line| line["kind"] != "unread");
-    assert_eq!(lines, alone);
     for (file, from, to, cause) in [
         (
             "camera.toml",

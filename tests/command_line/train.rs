@@ -110,7 +110,7 @@ fn every_class_of_a_rendered_building_is_recognized() {
     assert!((lines[1]["doors"][1].as_f64().unwrap() + 1.57).abs() < 0.1, "{lines:?}");
     assert!(lines[1]["marker"].is_object(), "{lines:?}");
 
-    let other = format!("{TRAIN} --stripe wall --stripe-width 0.1");
+    let other = format!("{TRAIN} --stripe wall=0.1");
     set.fact(&other, 0, &json!({ "folds": 5, "stripe": { "kind": "wall", "width": 0.1 } }));
     let text = set.out(&other, 0);
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");

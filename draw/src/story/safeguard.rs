@@ -18,7 +18,7 @@ impl Story {
                 let moves = counted(moves as usize, "move");
                 let text = format!("Every percept of the audit is as the map predicts ({moves}).");
                 self.add_paragraph(text);
-                return self.add_doors();
+                return;
             }
             SafeguardEvent::Contradicted(contradiction) => {
                 format!("Contradiction{moves}: {contradiction}. The robot looks for the marker.")

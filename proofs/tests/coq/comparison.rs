@@ -190,7 +190,7 @@ impl Case {
             lines.push(mapping.run_line(&start, Some(&mut |of| choose.below(of))));
             Ok(())
         };
-        ChoiceOdometer::exhaust(run, &mut |_| {}).unwrap();
+        ChoiceOdometer::exhaust(run, &mut |_| ControlFlow::Continue(())).unwrap();
         Self { algorithm: mapping.name(), start, given: "choices all".to_owned(), lines }
     }
 

@@ -10,7 +10,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use clap::ValueEnum;
 use image::RgbImage;
 use toposlam_model::enumerate::Watch;
 use toposlam_vision::{
@@ -68,23 +67,13 @@ pub(super) struct TrainArguments {
     /// Output file: .toml
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
-    /// Place of the stripe between floor and wall
-    #[arg(long, value_name = "WHERE", default_value = "floor")]
-    stripe: On,
-    /// Width of the stripe, across the floor or up the wall
-    #[arg(long, value_name = "METRES", default_value_t = 0.05)]
-    stripe_width: f64,
+    /// The stripe between floor and wall: a tape on the floor along the wall, or a baseboard at the foot of the
+    /// wall, and its width in metres, across the floor or up the wall
+    #[arg(long, value_name = "floor|wall=METRES", default_value = "floor=0.05", value_parser = stripe)]
+    stripe: Stripe,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum On {
-    /// A tape on the floor along the wall
-    Floor,
-    /// A baseboard at the foot of the wall
-    Wall,
 }
 
 /// The number of parts for cross-validation, if there are as many images: each part is classified with the colours
@@ -100,12 +89,11 @@ struct Pair {
 impl TrainArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         output::check_place(&self.out, &["toml"])?;
-        let stripe = self.stripe()?;
         let camera = input::read_camera(&self.calibration)?;
         let pairs = self.pairs()?;
         let progress = Progress::new("learning", "images")?;
         progress.parts(pairs.len());
-        let (mut training, mut left_out) = (Training::new(stripe), Vec::new());
+        let (mut training, mut left_out) = (Training::new(self.stripe), Vec::new());
         for pair in pairs {
             if progress.stop() {
                 progress.finish();
@@ -139,30 +127,13 @@ impl TrainArguments {
             Err(error) => Err(error.to_string()),
         };
         output::write_whole(&self.out, model.to_toml().as_bytes())?;
-        let report = TrainingReport::new(&training, left_out, stripe, validation);
+        let report = TrainingReport::new(&training, left_out, self.stripe, validation);
         if self.json {
             print_line(out, "training", &report)?;
         } else {
             report.print(out)?;
         }
         Ok(Outcome::Holds)
-    }
-
-    fn stripe(&self) -> Result<Stripe, CliError> {
-        let [least, most] = Stripe::WIDTHS;
-        let width = self.stripe_width;
-        if !(least..=most).contains(&width) {
-            let cause = format!(
-                "{width} is out of range; the width of a stripe in metres lies between {least} and \
-                 {most}"
-            );
-            return Err(CliError::at("--stripe-width", cause));
-        }
-        let kind = match self.stripe {
-            On::Floor => StripeKind::OnFloor,
-            On::Wall => StripeKind::OnWall,
-        };
-        Ok(Stripe { kind, width })
     }
 
     /// Pairs each image with its labels by name.
@@ -211,6 +182,21 @@ impl TrainArguments {
             }
         }
     }
+}
+
+/// Parses where the stripe is, and its width.
+fn stripe(text: &str) -> Result<Stripe, String> {
+    let (place, width) = text.split_once('=').unwrap_or((text, "0.05"));
+    let kind = match place {
+        "floor" => StripeKind::OnFloor,
+        "wall" => StripeKind::OnWall,
+        _ => return Err("write floor or wall, with a width as in wall=0.1".to_owned()),
+    };
+    let [least, most] = Stripe::WIDTHS;
+    let width = width.parse().ok().filter(|width| (least..=most).contains(width));
+    let width = width
+        .ok_or_else(|| format!("the width of a stripe lies between {least} and {most} metres"))?;
+    Ok(Stripe { kind, width })
 }
 
 /// The files in a folder with one of these endings, by name without the ending.

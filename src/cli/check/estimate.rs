@@ -38,13 +38,11 @@ const STANDARD_DEVIATIONS: f64 = 1.96;
 
 #[derive(clap::Args, Debug)]
 pub(super) struct EstimateOptions {
-    /// Do not check: predict starts, moves and time by random probes, with 95 % confidence intervals
-    #[arg(long, conflicts_with_all = ["choices", "from", "shard", "worst", "failed", "journal", "junit", "sarif", "keep_going"])]
-    pub(super) estimate: bool,
-
-    /// With --estimate: number of probes [default: 10000]
-    #[arg(long, value_name = "N", requires = "estimate", conflicts_with = "choices", value_parser = clap::value_parser!(u32).range(2..))]
-    probes: Option<u32>,
+    /// Do not check: predict starts, moves and time by random probes, 10000 or this many, with 95 %
+    /// confidence intervals
+    #[arg(long, value_name = "PROBES", num_args = 0..=1, default_missing_value = "10000", require_equals = true,
+        value_parser = clap::value_parser!(u32).range(2..), conflicts_with_all = ["choices", "from", "shard", "worst", "failed", "journal", "junit", "sarif", "keep_going"])]
+    pub(super) estimate: Option<u32>,
 
     /// With --estimate: random seed [default: 1]
     #[arg(long, value_name = "N", requires = "estimate", conflicts_with = "choices")]
@@ -147,7 +145,7 @@ impl EstimateOptions {
         watch: &dyn Watch,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
-        let (probes, seed) = (self.probes.unwrap_or(10_000), self.seed.unwrap_or(1));
+        let (probes, seed) = (self.estimate.unwrap_or_default(), self.seed.unwrap_or(1));
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
         let [mut starts, mut total, mut made] = [Sample::default(); 3];
         watch.parts(probes as usize);
@@ -213,7 +211,9 @@ impl EstimateLine<'_> {
         let probes = grouped((*probes).into());
         let last = match self.starts {
             None => {
-                format!("none of {probes} probes found a start, seed {seed}; use more --probes")
+                format!(
+                    "none of {probes} probes found a start, seed {seed}; use more: --estimate=N"
+                )
             }
             Some(_) => format!("{probes} probes, seed {seed}; 95 % confidence"),
         };

@@ -68,7 +68,7 @@ pub(super) struct SizeLine {
     /// Starts with runs that were not tried.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) gave_up: Option<u64>,
-    /// Those with more states than `--max-states`, and those with more than fit in memory.
+    /// Those with more states than `--choices` allows, and those with more than fit in memory.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) limits: Option<BTreeMap<String, u64>>,
     #[serde(skip_serializing_if = "Option::is_none")]

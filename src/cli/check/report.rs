@@ -229,7 +229,7 @@ impl<'o> CheckReport<'o> {
                 "",
                 " in fewer moves than their certificates have",
             ),
-            (self.total.reached("max-states"), "", " have more states than --max-states"),
+            (self.total.reached("max-states"), "", " have more states than --choices allows"),
             (self.total.reached("memory"), "the states of ", " need more than 1 GiB of memory"),
             (unknown.unwrap_or_default(), "on ", ", a limit was reached"),
         ] {

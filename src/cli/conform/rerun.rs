@@ -6,7 +6,7 @@
 
 use std::{io::Write, path::Path, time::Instant};
 
-use serde::Serialize;
+use serde_json::{Value, json};
 use toposlam_conform::LogHead;
 use toposlam_logs::topic_map::Role;
 use toposlam_model::{
@@ -28,37 +28,6 @@ use crate::cli::{
     output,
     text::{counted, grouped, print_hanging, since_start, tenths, vertices},
 };
-
-/// What `--json` prints.
-#[derive(Serialize)]
-struct RerunLine {
-    log: String,
-    pictures: u64,
-    moves: u64,
-    certificate: Option<CertificateCost>,
-    vertices: usize,
-    edges: usize,
-    complete: bool,
-    error: Option<String>,
-    scenes: [u64; 2],
-    commands: [u64; 2],
-    percepts: [u64; 2],
-    doors: [u64; 2],
-    map: Option<bool>,
-    difference: Option<DifferenceJson>,
-    compute_seconds: f64,
-    recorded_seconds: f64,
-    truncated: Option<TruncatedLine>,
-}
-
-#[derive(Serialize)]
-struct DifferenceJson {
-    picture: u64,
-    time: f64,
-    what: &'static str,
-    recorded: String,
-    found: String,
-}
 
 impl ConformArguments {
     pub(super) fn rerun(&self, out: &mut dyn Write) -> Result<Outcome, CliError> {
@@ -91,7 +60,7 @@ impl ConformArguments {
             error => CliError::in_file(log, error),
         })?;
         if self.json {
-            print_line(out, "replay", &RerunLine::new(log, &opened, &replay, seconds))?;
+            print_line(out, "replay", &json(log, &opened, &replay, seconds))?;
         } else {
             print(out, log, &replay, seconds)?;
             if let Some(truncation) = opened.log.truncation() {
@@ -112,37 +81,36 @@ impl ConformArguments {
     }
 }
 
-impl RerunLine {
-    fn new(log: &Path, opened: &OpenLog, replay: &Replay, compute_seconds: f64) -> Self {
-        let Replay { mapping, error, comparison, recorded_seconds, .. } = replay;
-        let map = mapping.map();
-        let both = |agreement: Agreement| [agreement.agree, agreement.of];
-        Self {
-            log: log.display().to_string(),
-            pictures: comparison.frames,
-            moves: mapping.moves(),
-            certificate: certificate(replay),
-            vertices: map.vertex_count(),
-            edges: edges(replay),
-            complete: map.complete().is_some(),
-            error: error.as_ref().map(ToString::to_string),
-            scenes: both(comparison.scenes),
-            commands: both(comparison.commands),
-            percepts: both(comparison.percepts),
-            doors: both(comparison.doors),
-            map: comparison.map,
-            difference: comparison.difference.clone().map(|difference| DifferenceJson {
-                picture: difference.frame,
-                time: difference.time,
-                what: difference.what,
-                recorded: difference.recorded,
-                found: difference.found,
-            }),
-            compute_seconds,
-            recorded_seconds: *recorded_seconds,
-            truncated: opened.log.truncation().map(TruncatedLine::from),
-        }
-    }
+/// What `--json` prints.
+fn json(log: &Path, opened: &OpenLog, replay: &Replay, compute_seconds: f64) -> Value {
+    let Replay { mapping, error, comparison, recorded_seconds, .. } = replay;
+    let map = mapping.map();
+    let both = |agreement: Agreement| [agreement.agree, agreement.of];
+    let difference = comparison.difference.as_ref().map(|difference| {
+        json!({
+            "picture": difference.frame, "time": difference.time, "what": difference.what,
+            "recorded": difference.recorded, "found": difference.found,
+        })
+    });
+    json!({
+        "log": log.display().to_string(),
+        "pictures": comparison.frames,
+        "moves": mapping.moves(),
+        "certificate": certificate(replay),
+        "vertices": map.vertex_count(),
+        "edges": edges(replay),
+        "complete": map.complete().is_some(),
+        "error": error.as_ref().map(ToString::to_string),
+        "scenes": both(comparison.scenes),
+        "commands": both(comparison.commands),
+        "percepts": both(comparison.percepts),
+        "doors": both(comparison.doors),
+        "map": comparison.map,
+        "difference": difference,
+        "compute_seconds": compute_seconds,
+        "recorded_seconds": recorded_seconds,
+        "truncated": opened.log.truncation().map(TruncatedLine::from),
+    })
 }
 
 fn print(out: &mut dyn Write, log: &Path, replay: &Replay, seconds: f64) -> Result<(), CliError> {

@@ -294,10 +294,10 @@ fn print_ways(ways: &EveryWay, out: &mut dyn Write) -> Result<(), CliError> {
     let reached = match limit {
         None => String::new(),
         Some(ChoicesLimit::States(most)) if *within_rounds == 0 => {
-            format!("The search stopped at --max-states {most}.")
+            format!("The search stopped at --choices all={most}.")
         }
         Some(ChoicesLimit::States(most)) => format!(
-            "The search stopped at --max-states {most}. That counts the states between rounds, at line \
+            "The search stopped at --choices all={most}. That counts the states between rounds, at line \
              4, and the {within} states within rounds, at line 8."
         ),
         Some(ChoicesLimit::Memory) => {

@@ -1,5 +1,3 @@
-use std::{thread, time::Duration};
-
 use clap::{Args, FromArgMatches};
 use serde_json::{Value, json};
 use toposlam_model::{
@@ -10,22 +8,26 @@ use toposlam_model::{
     percept::{Door, Sighting},
 };
 use toposlam_proofs::{
-    CaseReplay, CaseResult, ChoiceOdometer, Choose, Exhibit,
+    CaseReplay, CaseResult, ChoiceOdometer, Choose, Exhibit, Stop,
     choose::{claim, given},
     draw,
-    lemma::Exhaustive,
+    lemma::{Exhaustive, Sampled},
 };
 
 use super::*;
 
-/// Runs the verb on these lemmas.
-fn run(lemmas: &[Lemma], line: &str) -> (Result<Outcome, CliError>, String) {
+fn arguments(line: &str) -> ProofsArguments {
     let command = ProofsArguments::augment_args(clap::Command::new("proofs").no_binary_name(true));
     let matches = command.try_get_matches_from(line.split_whitespace()).unwrap();
-    let arguments = ProofsArguments::from_arg_matches(&matches).unwrap();
+    ProofsArguments::from_arg_matches(&matches).unwrap()
+}
+
+/// Runs the verb on these lemmas.
+fn run(lemmas: &[Lemma], line: &str) -> (Result<Outcome, CliError>, String) {
     let mut out = Vec::new();
     let theorems = [Theorem { name: "round", sentence: "It turns.".into(), paper: "2.2".into() }];
-    let outcome = arguments.run_with(&lemmas.iter().collect::<Vec<_>>(), &theorems, &mut out);
+    let lemmas: Vec<_> = lemmas.iter().collect();
+    let outcome = arguments(line).run_with(&lemmas, &theorems, &mut out);
     (outcome, String::from_utf8(out).unwrap())
 }
 
@@ -108,116 +110,54 @@ fn a_lemma_that_fails_prints_the_case_and_the_command_that_repeats_it() {
     let lemmas = [false_lemma(), true_lemma("low", 4)];
     let (outcome, text) = run(&lemmas, "--run all");
     assert_eq!(outcome.unwrap(), Outcome::Violated);
-    let rows: Vec<_> = text.lines().take(2).collect();
-    assert!(rows[0].starts_with("entry   1 case  ") && rows[0].ends_with(" s  fails"), "{text}");
-    assert!(rows[1].starts_with("low    4 cases  ") && rows[1].ends_with(" s  holds"), "{text}");
-    let (_, failed) = text.split_at(rows[0].len() + rows[1].len() + 2);
-    assert_eq!(failed, format!("{FAILED}\nviolated: 1 of 2 lemmas held, 4 cases\n"));
+    let (_, case) = text.split_once("\n\n").unwrap();
+    assert_eq!(case, format!("{}\nviolated: 1 of 2 lemmas held, 4 cases\n", &FAILED[1..]));
     let again = text.lines().find_map(|line| line.strip_prefix("  again: toposlam proofs "));
     let (outcome, text) = run(&lemmas, again.unwrap());
     assert_eq!((outcome.unwrap(), text.as_str()), (Outcome::Violated, &FAILED[1..]));
 
-    let lines = objects(&lemmas, "--run all", Outcome::Violated);
-    let [failed, held, case, totals] = lines.as_slice() else { panic!("{lines:?}") };
-    for (line, fields) in [
-        (
-            failed,
-            json!({ "lemma": "entry", "holds": false, "cases": 1, "choices": [0, 1, 0, 0, 0] }),
-        ),
-        (held, json!({ "lemma": "low", "holds": true, "cases": 4, "choices": null })),
-        (totals, json!({ "lemmas": 2, "held": 1, "cases": 4, "not_checked": 0, "holds": false })),
-        (
-            case,
-            json!({ "lemma": "entry", "holds": false, "engine": "exhaustive", "verdict": "fails" }),
-        ),
-        (case, json!({ "claim": failed["claim"], "choices": failed["choices"] })),
-    ] {
-        for (key, value) in fields.as_object().unwrap() {
-            assert_eq!(&line[key], value, "{key}: {line}");
-        }
-    }
-    let world = world_file::read(case["worlds"][0].to_string().as_bytes()).unwrap();
-    assert_eq!((world.graph.edge_count(), world.start), (1, Some(Dart(0))));
     let seen = |door: u32| json!({ "degree": 2, "sighting": format!("marker along door {door}") });
-    let walk = json!([{
-        "world": 0, "marker": "directional", "doors": [0], "poses": ["v0:0", "v0:1"],
-        "percepts": [seen(0), seen(1)], "stopped": null,
-    }]);
-    assert_eq!(case["walks"], walk);
-    assert_eq!(case["values"], json!([{ "name": "undirected", "value": "marker" }]));
-}
-
-#[test]
-fn a_case_holds_or_is_excluded() {
-    for (choices, expected, verdict) in [
-        ("3", Outcome::Holds, "holds: the lemma holds in this case"),
-        ("4", Outcome::Incomplete, "incomplete: the lemma excludes this case"),
-    ] {
-        let line = format!("--run low --choices {choices}");
-        let (outcome, text) = run(&[true_lemma("low", 4)], &line);
-        assert_eq!(outcome.unwrap(), expected);
-        assert!(text.ends_with(&format!("\n\n{verdict}\n")), "{text}");
+    let claim = "the robot has come in by the facing dart";
+    let mut lines = objects(&lemmas, "--run all", Outcome::Violated);
+    for line in &mut lines {
+        line.as_object_mut().unwrap().remove("seconds");
     }
+    let world = lines[2]["worlds"][0].take();
+    let world = world_file::read(world.to_string().as_bytes()).unwrap();
+    assert_eq!((world.graph.edge_count(), world.start), (1, Some(Dart(0))));
+    let expected = json!([
+        {
+            "schema": 1, "kind": "check", "lemma": "entry", "cases": 1, "verdict": "violated",
+            "holds": false, "choices": [0, 1, 0, 0, 0], "claim": claim, "interrupted": false,
+        },
+        {
+            "schema": 1, "kind": "check", "lemma": "low", "cases": 4, "verdict": "holds", "holds": true,
+            "choices": null, "interrupted": false,
+        },
+        {
+            "schema": 1, "kind": "case", "lemma": "entry", "engine": "exhaustive",
+            "choices": [0, 1, 0, 0, 0], "verdict": "fails", "holds": false, "claim": claim,
+            "worlds": [null],
+            "walks": [{
+                "world": 0, "marker": "directional", "doors": [0], "poses": ["v0:0", "v0:1"],
+                "percepts": [seen(0), seen(1)], "stopped": null,
+            }],
+            "values": [{ "name": "undirected", "value": "marker" }],
+        },
+        {
+            "schema": 1, "kind": "checks", "lemmas": 2, "held": 1, "not_checked": 0, "cases": 4,
+            "interrupted": false, "verdict": "violated", "holds": false,
+        },
+    ]);
+    assert_eq!(Value::from(lines), expected);
 }
 
+/// What a lemma has of a verdict: the outcome of a run, and parts of what it prints.
 #[test]
-fn a_lemma_with_another_number_of_cases_than_expected_fails() {
+fn lemmas_and_cases_have_verdicts() {
     fn excluded<C>(_: &mut C) -> CaseResult {
         Err(Stop::Excluded)
     }
-    for (pinned, cause) in
-        [(5, "expected 5 cases within its bound, found 4 cases"), (1, "found 4 cases")]
-    {
-        let (outcome, text) = run(&[true_lemma("low", pinned)], "--run low");
-        assert_eq!(outcome.unwrap(), Outcome::Violated);
-        assert!(text.contains(" s  fails\n\nlow\n  It is so.\n  fails: expected "), "{text}");
-        assert!(text.contains(cause), "{text}");
-        assert!(text.ends_with("\n\nviolated: 0 of 1 lemma held, 0 cases\n"), "{text}");
-        let line = &objects(&[true_lemma("low", pinned)], "--run low", Outcome::Violated)[0];
-        assert_eq!((&line["cases"], &line["pinned"]), (&4.into(), &pinned.into()));
-        assert_eq!((&line["holds"], &line["choices"]), (&false.into(), &Value::Null));
-    }
-    let (outcome, text) = run(&[lemma("none", 0, excluded, excluded)], "--run none");
-    assert_eq!(outcome.unwrap(), Outcome::Violated, "{text}");
-}
-
-/// Each walk goes as far as possible, if its world exists.
-#[test]
-fn several_worlds_are_numbered() {
-    fn two_worlds<C: Choose>(choose: &mut C) -> CaseResult {
-        let walk = |world, dart, door| {
-            let (marker, pose) = (&Undirected, Dart(dart));
-            move || Exhibit::Walk { world, marker, pose, doors: vec![Door(door)] }
-        };
-        choose.show(walk(0, 0, 7));
-        draw::start::<2>(choose, 1)?;
-        choose.show(walk(0, 0, 0));
-        choose.show(walk(0, 9, 0));
-        draw::start::<2>(choose, 2)?;
-        choose.show(walk(1, 2, 2));
-        Ok(())
-    }
-    let lemmas = [lemma("two", 20, two_worlds, two_worlds)];
-    let (outcome, text) = run(&lemmas, "--run two --choices 0,0,0,0,0");
-    assert_eq!(outcome.unwrap(), Outcome::Holds);
-    let heads: Vec<_> =
-        text.lines().filter(|line| line.contains("orld ") && line.ends_with(':')).collect();
-    let world = |n| format!("World {n}, as a file for `toposlam draw` and `toposlam explore`:");
-    let walk = |n| format!("A walk in world {n}, marker undirected:");
-    assert_eq!(heads, [world(1), walk(1), world(2), walk(2)]);
-    for part in [
-        "\nwalk: from dart 0 by the doors 7\n",
-        "\nwalk: from dart 9 by the doors 0\n",
-        "name = \"case-1\"",
-        "name = \"case-2\"",
-        "  stopped: door 2 was taken at a vertex with 2 doors\n",
-    ] {
-        assert!(text.contains(part), "{part}: {text}");
-    }
-}
-
-#[test]
-fn a_case_may_have_no_choices_and_a_lemma_that_panics_fails() {
     fn never<C>(_: &mut C) -> CaseResult {
         claim("one is two", false)
     }
@@ -226,17 +166,108 @@ fn a_case_may_have_no_choices_and_a_lemma_that_panics_fails() {
         assert!(number < 2, "a lemma of a test does this");
         claim("it is below 2", number < 2)
     }
-    let lemmas = [lemma("never", 1, never, never), lemma("wild", 1, panics, panics)];
-    for (name, claim, choices) in
-        [("never", "one is two", ""), ("wild", "the code does not panic", " 2")]
-    {
-        let (outcome, text) = run(&lemmas, &format!("--run {name}"));
-        assert_eq!(outcome.unwrap(), Outcome::Violated);
-        let again = format!("--run {name} --choices{choices}");
-        let fails =
-            format!("  fails: it is not true that {claim}\n  again: toposlam proofs {again}\n");
-        assert!(text.contains(&fails), "{text}");
-        assert_eq!(run(&lemmas, &again).0.unwrap(), Outcome::Violated);
+    let again = "  again: toposlam proofs --run";
+    let lemmas = [
+        true_lemma("low", 4),
+        true_lemma("more", 1),
+        true_lemma("fewer", 5),
+        lemma("none", 0, excluded, excluded),
+        lemma("never", 1, never, never),
+        lemma("wild", 1, panics, panics),
+    ];
+    for (line, expected, parts) in [
+        ("low --choices 3", Outcome::Holds, ["holds: the lemma holds in this case\n", ""]),
+        (
+            "low --choices 4",
+            Outcome::Incomplete,
+            ["\n\nincomplete: the lemma excludes this case\n", ""],
+        ),
+        // Another number of cases than expected, also none.
+        (
+            "more",
+            Outcome::Violated,
+            [
+                " s  fails\n\nmore\n  It is so.\n  fails: expected 1 case ",
+                " bound, found 4 cases\n",
+            ],
+        ),
+        (
+            "fewer",
+            Outcome::Violated,
+            [
+                "  fails: expected 5 cases within its bound, found 4 cases\n",
+                "\n\nviolated: 0 of 1 lemma held, 0 cases\n",
+            ],
+        ),
+        ("none", Outcome::Violated, ["  fails: expected 0 cases within its bound", ""]),
+        // A case without choices, and one in which the lemma panics.
+        (
+            "never",
+            Outcome::Violated,
+            ["  fails: it is not true that one is two\n", &format!("{again} never --choices\n")],
+        ),
+        (
+            "wild",
+            Outcome::Violated,
+            [
+                "  fails: it is not true that the code does not panic\n",
+                &format!("{again} wild --choices 2\n"),
+            ],
+        ),
+        ("never --choices", Outcome::Violated, ["violated: the lemma fails in this case\n", ""]),
+        ("wild --choices 2", Outcome::Violated, ["violated: the lemma fails in this case\n", ""]),
+    ] {
+        let (outcome, text) = run(&lemmas, &format!("--run {line}"));
+        assert_eq!(outcome.unwrap(), expected, "{line}: {text}");
+        assert!(parts.iter().all(|part| text.contains(part)), "{line}: {text}");
+    }
+    let line = &objects(&lemmas, "--run fewer", Outcome::Violated)[0];
+    assert_eq!((&line["cases"], &line["pinned"]), (&4.into(), &5.into()));
+    assert_eq!((&line["holds"], &line["choices"]), (&false.into(), &Value::Null));
+}
+
+/// Each walk goes as far as possible.
+#[test]
+fn several_worlds_are_numbered() {
+    fn two_worlds<C: Choose>(choose: &mut C) -> CaseResult {
+        for (world, edges) in [(0, 1), (1, 2)] {
+            draw::start::<2>(choose, edges)?;
+            let (marker, pose, doors) = (&Undirected, Dart(0), vec![Door(2)]);
+            choose.show(|| Exhibit::Walk { world, marker, pose, doors });
+        }
+        Ok(())
+    }
+    let lemmas = [lemma("two", 20, two_worlds, two_worlds)];
+    let (outcome, text) = run(&lemmas, "--run two --choices 0,0,0,0,0");
+    assert_eq!(outcome.unwrap(), Outcome::Holds);
+    for part in [
+        "\nWorld 1, as a file for `toposlam draw` and `toposlam explore`:\n\nname = \"case-1\"\n",
+        "\nA walk in world 1, marker undirected:\n",
+        "\nWorld 2, as a file for `toposlam draw` and `toposlam explore`:\n\nname = \"case-2\"\n",
+        "\nA walk in world 2, marker undirected:\n",
+        "  stopped: door 2 was taken at a vertex with 1 door\n",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
+/// Of two engines with these choices it is the one in which the lemma fails.
+#[test]
+fn a_case_is_of_the_engine_whose_bound_has_it() {
+    fn above<C: Choose>(choose: &mut C) -> CaseResult {
+        let number = choose.below(9);
+        claim("it is not 1 or 7", number != 1 && number != 7)
+    }
+    let mut low = true_lemma("low", 4);
+    low.sampled = Some(Sampled { bound: "up to 8", body: above, replay: above });
+    for (choice, engine, outcome) in [
+        (1, "sampled", Outcome::Violated),
+        (2, "exhaustive", Outcome::Holds),
+        (7, "sampled", Outcome::Violated),
+        (8, "sampled", Outcome::Holds),
+    ] {
+        let line = &objects(&[low], &format!("--run low --choices {choice}"), outcome)[0];
+        assert_eq!(line["engine"], engine, "{choice}");
     }
 }
 
@@ -251,7 +282,6 @@ fn a_unique_part_of_a_name_is_enough() {
     for (line, cause) in [
         ("--run lo", "--run: `lo` is part of several names:\n  low\n  lowest"),
         ("--run law", "--run: there is no lemma `law`; there are:\n  low\n  lowest\n  high"),
-        ("--run high --choices 0 --engine sampled", "--engine: high is not sampled"),
         ("--run all --run round", &format!("--run: {proved}")),
     ] {
         let (Err(CliError::Input(message)), text) = run(&lemmas, line) else { panic!() };
@@ -260,34 +290,26 @@ fn a_unique_part_of_a_name_is_enough() {
 }
 
 #[test]
-fn an_interrupt_does_not_wait_for_the_case() {
+fn a_check_can_be_stopped() {
     struct AtOnce;
     impl Watch for AtOnce {
         fn stop(&self) -> bool {
             true
         }
     }
-    fn endless<C>(_: &mut C) -> CaseResult {
-        loop {
-            thread::sleep(Duration::from_secs(60));
-        }
+    fn many<C: Choose>(choose: &mut C) -> CaseResult {
+        let _ = [255, 255, 2].map(|number| choose.below(number));
+        Ok(())
     }
-    let endless = lemma("endless", 9, endless, endless);
-    for (json, end) in [
-        (false, "\nincomplete, interrupted: 0 of 2 lemmas held, 0 cases; 1 not checked\n"),
-        (true, "\"interrupted\":true,\"verdict\":\"not-known\",\"holds\":false}\n"),
+    let many = lemma("many", 130_050, many, many);
+    for (options, end) in [
+        ("", "\nincomplete, interrupted: 0 of 2 lemmas held, 65,536 cases; 1 not checked\n"),
+        ("--json", "\"interrupted\":true,\"verdict\":\"not-known\",\"holds\":false}\n"),
     ] {
-        let checked = [(&endless, CheckedLemma::new(&endless, &AtOnce).unwrap())];
-        assert!(checked[0].1.interrupted);
-        let arguments = ProofsArguments {
-            run: Vec::new(),
-            choices: None,
-            engine: Engine::Exhaustive,
-            json,
-            ci: CiOptions::default(),
-        };
+        let checked = [CheckedLemma::new(&many, &AtOnce)];
         let mut out = Vec::new();
-        assert_eq!(arguments.print_end(2, &checked, &mut out).unwrap(), Outcome::Incomplete);
+        let outcome = arguments(options).print_totals(2, &checked, &mut out);
+        assert_eq!(outcome.unwrap(), Outcome::Incomplete);
         let text = String::from_utf8(out).unwrap();
         assert!(text.ends_with(end), "{text}");
     }

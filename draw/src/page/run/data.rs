@@ -12,7 +12,7 @@ use crate::{
     picture::{Drawn, Point},
     run_page_data::{PageArrival, PageFrame, RunPageData},
     scene,
-    story::{Story, StoryDetail},
+    story::Story,
 };
 
 /// The radius of the robot's body, in metres.
@@ -21,7 +21,7 @@ const BODY: f64 = 0.41 / 2.0;
 /// The data as JSON that can stand inside a `script` element.
 pub(super) fn json(run_data: &RunPageData, drawn: &Drawn) -> String {
     let mut album = Album::default();
-    let story = Story::new(&run_data.world, run_data.facing, StoryDetail::default());
+    let story = Story::new(&run_data.world, run_data.facing);
     let (story, lines) = story.of_steps(&run_data.steps);
     let last = run_data.rounds.len().saturating_sub(1);
     let frames = run_data.rounds.iter().zip(&drawn.places).enumerate();

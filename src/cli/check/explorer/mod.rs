@@ -21,7 +21,7 @@ pub(super) struct ExplorerOptions {
     #[arg(
         long,
         value_name = "COMMAND",
-        conflicts_with_all = ["algorithm", "choices", "max_states", "shard", "estimate", "journal"]
+        conflicts_with_all = ["algorithm", "choices", "shard", "estimate", "journal"]
     )]
     pub(super) explorer: Option<ExplorerCommand>,
 
