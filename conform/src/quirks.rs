@@ -5,20 +5,17 @@ use toposlam_model::format::document::{Document, DocumentError, DocumentErrorKin
 
 use super::divergence::{Divergence, NAMES};
 
-/// The tolerated divergences.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Quirks {
     /// In the order of their file.
     pub(super) quirks: Vec<Quirk>,
 }
 
-/// A divergence that is tolerated.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Quirk {
     pub(super) name: String,
     pub(super) reason: String,
-    /// The name of the cause of the divergence.
     cause: String,
     /// The only event at which it is tolerated, counted from 1; everywhere without one.
     event: Option<usize>,
