@@ -2,14 +2,10 @@
 //! the witness. It is slow and simple: the ends of all vertices of the trail are labelled, and labels are
 //! made equal until nothing changes.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    ops::ControlFlow,
-};
+use std::collections::{BTreeMap, BTreeSet};
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     percept::{Door, Percept, Sighting},
     trace::{Trace, TraceEventKind},
 };
@@ -58,21 +54,6 @@ impl Position<'_> {
 fn is_undirected(trace: &Trace) -> bool {
     let lies = |percept: &Percept| matches!(percept.sighting, Sighting::Lying(_));
     trace.percepts().iter().any(lies)
-}
-
-/// Whether a world with at most this many edges explains a trace, from any start, with the marker along any
-/// dart or without one.
-pub(super) fn is_explained_by_small(trace: &Trace, edges: usize) -> bool {
-    (1..=edges).any(|edges| {
-        let mut visit = |found: EnumeratedGraph| {
-            let graph = found.graph;
-            let mut markers = graph.darts().map(Some).chain([None]);
-            let explains = |marker| Position { graph, marker, pose: Dart(0) }.explains(trace);
-            if markers.any(explains) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        };
-        let all = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
-        all.for_each(&mut visit).is_break()
-    })
 }
 
 /// A world, a dart of its marker and the robot's pose at the start.
