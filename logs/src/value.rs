@@ -5,7 +5,6 @@ use std::borrow::Cow;
 
 use super::{
     definition::{FieldType, Struct},
-    from_value::FromField,
     stamp::Stamp,
     standard::Quaternion,
 };
@@ -188,11 +187,6 @@ impl<'a> Value<'a> {
             ["sec", "nanosec"].map(|name| self.at(name).and_then(|part| part.i64()));
         // A time of ROS 1 goes beyond 2038.
         Some(Stamp { sec: sec? as i32, nanosec: nanosec?.try_into().ok()? })
-    }
-
-    /// The value at a path, if it is one of this type.
-    pub(super) fn get<T: FromField>(&self, path: &str) -> Option<T> {
-        T::from_field(&self.at(path)?)
     }
 
     pub(super) fn list_at(&self, path: &str) -> Vec<Value<'a>> {
