@@ -1,4 +1,4 @@
-//! Benchmark of `conform` on long logs, after their events are read: `cargo bench -p toposlam-robot
+//! Benchmark of `conform` on long logs, after their events are read: `cargo bench -p toposlam-conform
 //! --bench conform`. Runs in the plans with 12, 50, 100 and 200 junctions have 141, 5,763, 34,393
 //! and 95,411 events.
 

@@ -7,7 +7,7 @@
 //! ones are neither.
 //!
 //! ```sh
-//! cargo run --release -p toposlam-robot --example moved_frames -- aces.log.gz aces-visits.jsonl [PARAMS.toml]
+//! cargo run --release -p toposlam-conform --example moved_frames -- aces.log.gz aces-visits.jsonl [PARAMS.toml]
 //! ```
 
 use std::{env, error::Error, fs, path::Path, sync::Arc};

@@ -2,7 +2,7 @@
 
 use toposlam_logs::record::RunEnding;
 use toposlam_model::{
-    percept::WalkEvent,
+    percept::{Door, WalkEvent},
     trace::{AlgorithmMatch, AllowedStep, Departure, MatchEnd, StepPurpose, Trace},
 };
 use toposlam_robot::budget::{Allowance, RunBudget, Spent};
@@ -31,9 +31,7 @@ pub(super) fn within_budget(
         arrive(&mut allowance, trace, number);
         let spent = spent(number);
         if number < last && allowance.forbids(door, spent).is_some() {
-            let allowed =
-                AllowedStep { door: allowance.door_back(), purpose: StepPurpose::TurnBack };
-            return departing(followed, trace, number, allowed);
+            return departing(followed, trace, number, allowance.door_back());
         }
         if number == last && turned_back {
             let could_go_on = moves_alone == budget
@@ -83,25 +81,22 @@ fn on_way_back(
             if number == first {
                 return followed;
             }
-            let allowed = AllowedStep { door: back, purpose: StepPurpose::TurnBack };
-            return departing(followed, trace, number, allowed);
+            return departing(followed, trace, number, back);
         }
         allowance.leave(door, spent(number));
     }
     AlgorithmMatch { reached: MatchEnd::EndOfTrace, ..followed }
 }
 
-/// The match with another departure, at a door.
+/// The match with another departure, at a door: the robot does not turn back by the door by which it must.
 fn departing(
     followed: AlgorithmMatch,
     trace: &Trace,
     number: usize,
-    allowed: AllowedStep,
+    door: Option<Door>,
 ) -> AlgorithmMatch {
-    let departure = Departure {
-        algorithm: followed.algorithm,
-        event: trace.door_event(number),
-        allowed: vec![allowed],
-    };
+    let allowed = vec![AllowedStep { door, purpose: StepPurpose::TurnBack }];
+    let event = trace.door_event(number);
+    let departure = Departure { algorithm: followed.algorithm, event, allowed };
     AlgorithmMatch { reached: MatchEnd::Departure(departure), ..followed }
 }

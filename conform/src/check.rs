@@ -77,7 +77,6 @@ pub enum DoorChooser {
     Anyone,
 }
 
-/// A log that was checked.
 #[derive(Clone, Debug)]
 pub struct CheckedLog {
     pub extracted: ExtractedRun,
@@ -93,7 +92,6 @@ pub struct CheckedLog {
     pub quirks: Quirks,
 }
 
-/// Why a log cannot be checked.
 #[derive(Debug, Error)]
 pub enum CheckError {
     #[error(transparent)]

@@ -10,7 +10,6 @@ use toposlam_robot::{budget::RunBudget, run_settings::RecordedSettings};
 
 use super::{budget_check::within_budget, events::RunEvents, known_world::KnownWorld};
 
-/// What a run is checked against.
 #[derive(Clone, Debug)]
 pub struct ConformConfig {
     pub world: Option<KnownWorld>,

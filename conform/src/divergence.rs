@@ -22,7 +22,6 @@ pub struct Divergence {
     pub fault: FaultClass,
 }
 
-/// The class of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FaultClass {
@@ -58,13 +57,10 @@ impl fmt::Display for FaultClass {
 /// Odometry contradicts a direction if they differ by more than this, in radians.
 pub(super) const OFF: f64 = FRAC_PI_6;
 
-/// Why an event is not allowed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DivergenceCause {
-    /// Percepts and doors do not alternate.
     #[error("{0}")]
     NotInTurn(TraceOrderError),
-    /// Its number of moves is wrong.
     #[error("its move number is {expected}, and the log records {recorded}")]
     Number { expected: u32, recorded: u32 },
     /// Its degree is not its number of directions with a door.
@@ -111,7 +107,6 @@ pub enum DivergenceCause {
         }
     })]
     Undecided(UndecidedCause),
-    /// It does not fit the known world.
     #[error("{}", match .0.candidates.len() {
         1 => "it does not fit the known world".to_owned(),
         poses => format!("it fits none of the {poses} candidate poses in the known world"),
@@ -119,7 +114,6 @@ pub enum DivergenceCause {
     World(Misfit),
     #[error("no world of any size explains the log up to here: {why}")]
     NoWorld { event: TraceEvent, why: Impossibility },
-    /// No run of the algorithm has it.
     #[error("{}", departed(.0))]
     Algorithm(Departure),
     #[error("the log records that the map is complete; {unexplored} edge ends are unexplored")]

@@ -22,14 +22,12 @@ pub struct EventSource {
     pub offset: u64,
 }
 
-/// An event that is checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedEvent {
     pub source: EventSource,
     pub kind: CheckedKind,
 }
 
-/// What happened.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckedKind {
     /// The robot stood at a junction.
@@ -41,7 +39,6 @@ pub enum CheckedKind {
         /// What odometry measured since the arrival before; `None` if it is not known.
         hallway: Option<HallwayMeasurement>,
     },
-    /// The robot left a junction.
     Door {
         /// The number of the move in the log, counted from 1.
         number: Option<u32>,
@@ -142,13 +139,17 @@ impl CheckedEvent {
 }
 
 impl RunEvents {
+    pub(crate) fn arrivals_mut(&mut self) -> impl Iterator<Item = &mut Arrival> {
+        self.events.iter_mut().filter_map(CheckedEvent::arrival_mut)
+    }
+
     /// Completes the arrivals that do not record whether the marker was seen: without a marker, none was. A door
     /// along which an undirected marker points is left out.
     pub(crate) fn complete_sightings(&mut self, marker: &dyn Marker) -> Result<(), SightingError> {
         let is = |other: &dyn Marker| marker.name() == other.name();
         let [is_none, is_directional, is_undirected] =
             [is(&NoMarker), is(&Directional), is(&Undirected)];
-        for arrival in self.events.iter_mut().filter_map(CheckedEvent::arrival_mut) {
+        for arrival in self.arrivals_mut() {
             match arrival.sighting {
                 None if is_none => arrival.sighting = Some(Sighting::Nothing),
                 None => return Err(SightingError::NotRecorded),

@@ -24,7 +24,6 @@ use super::{
     tolerance::Tolerance,
 };
 
-/// The result of checking a run.
 #[derive(Clone, Debug)]
 pub struct Judgement {
     /// The events; a tolerated event is replaced by the expected one.
@@ -58,7 +57,6 @@ pub struct Judgement {
     pub tolerated: Vec<(Divergence, usize)>,
 }
 
-/// The cases that a run covers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RunCoverage {
     pub algorithm: AlgorithmCoverage,
@@ -66,7 +64,6 @@ pub struct RunCoverage {
     pub junctions: BTreeMap<JunctionShape, u64>,
 }
 
-/// The verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ConformVerdict {
@@ -89,7 +86,6 @@ impl ConformVerdict {
     }
 }
 
-/// Why a run cannot be judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum JudgeError {
     #[error("it has neither a percept nor a visit to a junction")]
@@ -99,7 +95,6 @@ pub enum JudgeError {
     OutOfOrder { event: usize, order: OutOfOrder },
     #[error(transparent)]
     Marker(#[from] SightingError),
-    /// The algorithm does not run with this marker.
     #[error("{} needs the directional marker, not `{marker}`", algorithm.in_words())]
     Algorithm { algorithm: MappingAlgorithm, marker: &'static str },
 }

@@ -9,11 +9,11 @@ use toposlam_model::{
     percept::{Door, Sighting},
 };
 use toposlam_vision::{
-    geometry::{angle, unit},
+    geometry::{angle, distance, unit},
     place::nearest_direction,
 };
 
-use super::events::{CheckedEvent, CheckedKind};
+use super::events::CheckedEvent;
 
 /// A junction contains a place that is at most this much farther from its centre than its extent, in metres: half of the
 /// shortest way between two junctions.
@@ -52,7 +52,6 @@ pub enum AddedMarker {
 /// A sighting, and when it was, in nanoseconds.
 pub type TimedSighting = (u64, FiducialSighting);
 
-/// Why the visits cannot be completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum MarkedVisitsError {
     #[error("a directional marker needs a heading: at = [x, y, heading]")]
@@ -62,9 +61,8 @@ pub enum MarkedVisitsError {
 }
 
 impl VisitedJunction {
-    fn contains(&self, [x, y]: [f64; 2]) -> bool {
-        let off = (self.centre[0] - x).hypot(self.centre[1] - y);
-        off <= self.extent + BESIDE
+    fn contains(&self, place: [f64; 2]) -> bool {
+        distance(self.centre, place) <= self.extent + BESIDE
     }
 
     fn door(&self, heading: f64) -> Option<Door> {
@@ -156,8 +154,7 @@ fn complete(
     let mut seen = 0;
     for junction in junctions {
         let heading = heading_at(junction);
-        let Some(CheckedEvent { kind: CheckedKind::Arrival { arrival, .. }, .. }) =
-            events.get_mut(junction.event)
+        let Some(arrival) = events.get_mut(junction.event).and_then(CheckedEvent::arrival_mut)
         else {
             continue;
         };
@@ -181,7 +178,7 @@ mod tests {
     use toposlam_model::marker::NoMarker;
 
     use super::*;
-    use crate::EventSource;
+    use crate::{CheckedKind, EventSource};
 
     const NONE: Option<Sighting> = Some(Sighting::Nothing);
     const LIES: Option<Sighting> = Some(Sighting::Lying(1));
@@ -202,8 +199,7 @@ mod tests {
             let entry = Some(PI);
             let arrival = Arrival { number: None, degree: 3, sighting: None, form: None, entry };
             let arrived = CheckedKind::Arrival { arrival, entry_off: None, hallway: None };
-            let left = CheckedKind::Door { door: Door(1), number: None, off: None };
-            for (seconds, kind) in [(0, arrived), (1, left)] {
+            for (seconds, kind) in [(0, arrived), (1, Door(1).into())] {
                 let time = (10 * number + seconds) * 1_000_000_000;
                 let source = EventSource { time, ..EventSource::default() };
                 events.push(CheckedEvent { source, kind });
@@ -213,11 +209,7 @@ mod tests {
     }
 
     fn sightings(events: &[CheckedEvent]) -> Vec<Option<Sighting>> {
-        let arrivals = events.iter().filter_map(|event| match &event.kind {
-            CheckedKind::Arrival { arrival, .. } => Some(arrival.sighting),
-            _ => None,
-        });
-        arrivals.collect()
+        events.iter().filter_map(|event| Some(event.arrival()?.sighting)).collect()
     }
 
     #[test]

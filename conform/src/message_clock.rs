@@ -14,7 +14,6 @@ const WAITING: usize = 1000;
 /// Skips messages that are far from all others in time.
 #[derive(Clone, Debug)]
 pub(super) struct MessageClock<T> {
-    /// The time of the last message.
     last: u64,
     /// The last messages that stand together, as long as they are few.
     together: Vec<T>,

@@ -70,10 +70,8 @@ impl PlacedScenes {
         self.scenes.push(Timed { message: source.id, time, content: (source, scene) });
     }
 
-    /// The scenes in the order of time, and the number of messages that are skipped.
-    ///
-    /// # Errors
-    /// Returns an error if a clock goes back, or if many scenes together are far from all odometry.
+    /// The scenes in the order of time, and the number of messages that are skipped; an error if a clock goes back, or
+    /// if many scenes together are far from all odometry.
     pub(super) fn finish(self) -> Result<(Vec<SensedScene>, u64), SceneClockError> {
         let (readings, mut skipped) = without_far(self.readings);
         let readings = in_order(readings)?.into_iter();

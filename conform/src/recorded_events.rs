@@ -8,6 +8,7 @@ use toposlam_model::{
     percept::Door,
 };
 use toposlam_robot::measured_hallway::{MeasuredHallway, direction};
+use toposlam_vision::geometry;
 
 use super::events::{CheckedEvent, CheckedKind, EventSource};
 
@@ -54,7 +55,8 @@ impl RecordedEvents {
             if let Some(CheckedEvent { kind: CheckedKind::Door { off, .. }, .. }) =
                 self.events.get_mut(event)
             {
-                *off = Some(wrapped(way(&from, &odometry) - direction).abs());
+                let way = geometry::direction(from.position, odometry.position);
+                *off = Some(wrapped(way - direction).abs());
             }
         }
         while self.way.get(1).is_some_and(|second| second.distance(&odometry) >= FAR_ENOUGH) {
@@ -71,7 +73,7 @@ impl RecordedEvents {
         } else {
             let ends = self.way.front().zip(now);
             let far_enough = ends.filter(|(from, now)| from.distance(now) >= FAR_ENOUGH);
-            far_enough.map(|(from, now)| way(now, from))
+            far_enough.map(|(from, now)| geometry::direction(now.position, from.position))
         };
         let entry_off =
             arrival.entry.zip(came_from).map(|(entry, from)| wrapped(entry - from).abs());
@@ -105,12 +107,6 @@ impl RecordedEvents {
     pub fn finish(self) -> Vec<CheckedEvent> {
         self.events
     }
-}
-
-/// The direction from one position to another.
-fn way(from: &Odometry, to: &Odometry) -> f64 {
-    let [x, y] = [0, 1].map(|axis| to.position[axis] - from.position[axis]);
-    y.atan2(x)
 }
 
 #[cfg(test)]

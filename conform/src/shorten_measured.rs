@@ -156,34 +156,33 @@ impl<'j> MeasuredWalk<'j> {
         let whole = |event: usize| {
             visits.get(WalkEvent::at(event).moves()).map(|&visit| self.arrival(visit))
         };
-        let (
-            DivergenceCause::Measurement { between, earlier, measurement },
-            DivergenceCause::Measurement {
-                between: before_between,
-                earlier: before_earlier,
-                measurement: before,
-            },
-        ) = (&found.cause, &self.divergence.cause)
-        else {
+        let measured = |divergence: &Divergence| match divergence.cause {
+            DivergenceCause::Measurement { between, earlier, measurement } => {
+                Some((between, earlier, measurement))
+            }
+            _ => None,
+        };
+        let both = measured(found).zip(measured(self.divergence));
+        let Some(((between, earlier, now), (whole_between, whole_earlier, before))) = both else {
             return false;
         };
-        let same_begin = match before {
-            // Moves, which may begin at another visit of the same place.
-            ContradictoryMeasurement::Length { .. } | ContradictoryMeasurement::Turn { .. } => true,
-            _ => whole(between[0]) == Some(before_between[0]),
-        };
         // The length or the turn is that of the same move.
-        let same_measurement = match (measurement, before) {
+        let is_same = match (now, before) {
             (
                 ContradictoryMeasurement::ClosedTurns { quarters },
                 ContradictoryMeasurement::ClosedTurns { quarters: other },
             ) => quarters == other,
-            (one, other) => discriminant(one) == discriminant(other),
+            (one, other) => discriminant(&one) == discriminant(&other),
         };
-        whole(between[1]) == Some(before_between[1])
-            && whole(earlier[1]) == Some(before_earlier[1])
-            && same_begin
-            && same_measurement
+        // Moves may begin at another visit of the same place.
+        let is_move = matches!(
+            before,
+            ContradictoryMeasurement::Length { .. } | ContradictoryMeasurement::Turn { .. }
+        );
+        whole(between[1]) == Some(whole_between[1])
+            && whole(earlier[1]) == Some(whole_earlier[1])
+            && (is_move || whole(between[0]) == Some(whole_between[0]))
+            && is_same
             && found.fault == self.divergence.fault
     }
 }

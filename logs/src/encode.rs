@@ -144,10 +144,7 @@ pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
     }
 }
 
-/// The arrival in a message.
-///
-/// # Errors
-/// Returns an error if its marker points along a negative door.
+/// The arrival in a message; an error if its marker points along a negative door.
 pub(super) fn arrival_of(message: &Percept) -> Result<Arrival, String> {
     Ok(Arrival {
         number: known(message.r#move),
@@ -158,10 +155,7 @@ pub(super) fn arrival_of(message: &Percept) -> Result<Arrival, String> {
     })
 }
 
-/// The sighting of a marker that points along a door; -1: of none.
-///
-/// # Errors
-/// Returns an error if there is no door with this number.
+/// The sighting of a marker that points along a door; -1: of none. An error if there is no door with this number.
 pub(super) fn sighting_of(marker: i64) -> Result<Sighting, String> {
     if marker == i64::from(NONE) {
         return Ok(Sighting::Nothing);

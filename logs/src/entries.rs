@@ -19,7 +19,7 @@ use super::{
     messages::{Hypothesis, Run, Stamp},
     reader::Log,
     sensor_data::{self, image_of},
-    topic::{Encoding, Topic},
+    topic::Encoding,
     topic_map::{BoundTopicMap, Carried, MessagePart, Role},
     transforms::{self, Mounts},
     value::Value,
@@ -110,6 +110,7 @@ impl Entries<'_> {
         let stamp = stamp(&value, time);
         let since_start = stamp.nanoseconds().saturating_sub(log.start().unwrap_or(0));
         let taken = since_start as f64 / 1e9;
+        let is_carmen = topic.encoding == Encoding::Carmen;
         let of_topic = |carried: &&Carried| carried.topic == message.topic;
         let all: Vec<_> = self.bound.carried.iter().filter(of_topic).cloned().collect();
         for carried in all {
@@ -122,7 +123,7 @@ impl Entries<'_> {
                     let scan = Some(Arc::new(scan.map_err(wrong)?));
                     self.add(message, stamp, EventKind::Frame(Frame { scan, ..frame }).into());
                 }
-                (role @ (Role::Scan | Role::Odometry), _) if carried.own && is_carmen(topic) => {
+                (role @ (Role::Scan | Role::Odometry), _) if carried.own && is_carmen => {
                     let recorded = carmen::reading(&topic.type_name, &value, &file.text.parameters);
                     let RecordedScan { scan, odometry } = recorded.map_err(wrong)?;
                     if role == Role::Odometry || self.bound.carries(Role::Odometry) {
@@ -199,10 +200,6 @@ impl From<EventKind> for Content {
     fn from(kind: EventKind) -> Self {
         Self::Event(kind)
     }
-}
-
-fn is_carmen(topic: &Topic) -> bool {
-    topic.encoding == Encoding::Carmen
 }
 
 fn stamp(value: &Value<'_>, time: u64) -> Stamp {

@@ -88,10 +88,8 @@ impl Visitor<'_> for MarkerVisitor {
 }
 
 impl VisitLine {
-    /// What the robot saw of its marker; `None`: not recorded.
-    ///
-    /// # Errors
-    /// Returns an error if there is no door with the number of the marker's.
+    /// What the robot saw of its marker; `None`: not recorded. An error if there is no door with the number of the
+    /// marker's.
     pub(super) fn sighting(&self) -> Result<Option<Sighting>, String> {
         let sighting = |marker| match marker {
             LineMarker::Door(door) => encode::sighting_of(door),
@@ -233,12 +231,9 @@ fn cause(error: &serde_json::Error) -> String {
     message.split(" at line ").next().unwrap_or_default().replace(char::is_control, " ")
 }
 
-/// Reads a line.
+/// Reads a line; an error if it is not an event, and not another JSON object with a `kind`.
 ///
 /// Takes at most 64 bytes of memory for each byte of the line, and 4096 besides.
-///
-/// # Errors
-/// Returns an error if it is not an event, and not another JSON object with a `kind`.
 pub(super) fn parse(line: &[u8], columns: Option<&Columns>) -> Result<Parsed, String> {
     let event = match columns {
         None => {

@@ -40,6 +40,13 @@ impl<T: FromField, const MANY: usize> FromField for [T; MANY] {
     }
 }
 
+impl Value<'_> {
+    /// The value at a path, if it is one of this type.
+    pub(super) fn get<T: FromField>(&self, path: &str) -> Option<T> {
+        T::from_field(&self.at(path)?)
+    }
+}
+
 pub(super) trait FromValue: Sized {
     /// The message that a value is, or the field that it lacks.
     fn from_value(value: &Value<'_>) -> Result<Self, &'static str>;

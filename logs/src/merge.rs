@@ -3,7 +3,6 @@
 use std::{
     cmp::Reverse,
     collections::{BTreeMap, BinaryHeap},
-    ops::Range,
 };
 
 use super::{
@@ -119,28 +118,12 @@ impl<'l> RawMessages<'l> {
             }
             let Some(Reverse(next)) = self.waiting.pop() else { return Ok(None) };
             self.number += 1;
-            let bytes = if self.wanted.get(next.topic).copied().unwrap_or_default() {
-                let bytes = self.take(next.section, next.start..next.end)?;
-                match self.log.section(next.section) {
-                    Some((_, file)) => {
-                        Some(file.message(bytes).map_err(|cause| file.error(cause, next.place))?)
-                    }
-                    None => None,
-                }
-            } else {
-                None
-            };
+            let is_wanted = self.wanted.get(next.topic).copied().unwrap_or_default();
+            let message = if is_wanted { self.take(&next)? } else { None };
             self.release(next.section);
-            let Some(bytes) = bytes else { continue };
-            let section = self.log.sections.get(next.section);
-            return Ok(Some(RawMessage {
-                topic: next.topic,
-                time: next.time,
-                offset: next.place,
-                file: section.map_or(0, |section| section.file),
-                number: self.number,
-                bytes,
-            }));
+            if message.is_some() {
+                return Ok(message);
+            }
         }
     }
 
@@ -172,10 +155,10 @@ impl<'l> RawMessages<'l> {
         Ok(())
     }
 
-    /// A part of a section, which is read again if it was released.
-    fn take(&mut self, index: usize, part: Range<usize>) -> Result<Vec<u8>, LogError> {
-        let Some((section, file)) = self.log.section(index) else { return Ok(Vec::new()) };
-        let Some(held) = self.held.get_mut(&index) else { return Ok(Vec::new()) };
+    /// A message of a section, which is read again if it was released.
+    fn take(&mut self, next: &Waiting) -> Result<Option<RawMessage>, LogError> {
+        let Some((section, file)) = self.log.section(next.section) else { return Ok(None) };
+        let Some(held) = self.held.get_mut(&next.section) else { return Ok(None) };
         self.asked += 1;
         held.asked = self.asked;
         let bytes = match &mut held.bytes {
@@ -185,9 +168,12 @@ impl<'l> RawMessages<'l> {
                 gone.insert(section.load(file)?)
             }
         };
-        let taken = bytes.get(part).unwrap_or_default().to_vec();
+        let bytes = bytes.get(next.start..next.end).unwrap_or_default().to_vec();
         self.free_memory();
-        Ok(taken)
+        let bytes = file.message(bytes).map_err(|cause| file.error(cause, next.place))?;
+        let Waiting { time, place: offset, topic, .. } = *next;
+        let (file, number) = (section.file, self.number);
+        Ok(Some(RawMessage { topic, time, offset, file, number, bytes }))
     }
 
     fn release(&mut self, index: usize) {

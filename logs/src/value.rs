@@ -5,7 +5,6 @@ use std::borrow::Cow;
 
 use super::{
     definition::{FieldType, Struct},
-    from_value::FromField,
     stamp::Stamp,
     standard::Quaternion,
 };
@@ -95,20 +94,35 @@ impl<'a> Value<'a> {
     /// The value at a path such as `pose.pose.position.x` or `doors[0]`; the empty path is the
     /// message itself. Of a time `sec` and `nanosec` are parts (`secs` and `nsecs`, too).
     pub fn at(&self, path: &str) -> Option<Value<'a>> {
-        if path.is_empty() {
-            return Some(self.clone());
+        if path.is_empty() { Some(self.clone()) } else { self.field_at(path) }
+    }
+
+    fn field_at(&self, path: &str) -> Option<Value<'a>> {
+        let end = path.find(['.', '[']).unwrap_or(path.len());
+        let (name, rest) = path.split_at(end);
+        match (self, name) {
+            (Self::Time(sec, _), "sec" | "secs") => Self::Int(*sec).rest_at(rest),
+            (Self::Time(_, nanosec), "nanosec" | "nsecs") => Self::Int(*nanosec).rest_at(rest),
+            (Self::Struct(made, values), _) => values.get(made.field(name)?.0)?.rest_at(rest),
+            _ => None,
         }
-        let mut here = Cow::Borrowed(self);
-        for step in path.split('.') {
-            let (name, indices) =
-                step.split_once('[').map_or((step, None), |(name, rest)| (name, Some(rest)));
-            here = part(here, name)?;
-            let Some(indices) = indices else { continue };
-            for index in indices.strip_suffix(']')?.split("][") {
-                here = element(here, index.parse().ok()?)?;
-            }
+    }
+
+    /// The value at the rest of a path: nothing, a field behind a point, or an element in brackets.
+    fn rest_at(&self, rest: &str) -> Option<Value<'a>> {
+        if let Some(path) = rest.strip_prefix('.') {
+            return self.field_at(path);
         }
-        Some(here.into_owned())
+        let Some(rest) = rest.strip_prefix('[') else {
+            return rest.is_empty().then(|| self.clone());
+        };
+        let (index, rest) = rest.split_once(']')?;
+        let index = index.parse().ok()?;
+        match self {
+            Self::Numbers(numbers) => numbers.get(index)?.rest_at(rest),
+            Self::List(list) => list.get(index)?.rest_at(rest),
+            _ => None,
+        }
     }
 
     pub fn f64(&self) -> Option<f64> {
@@ -175,11 +189,6 @@ impl<'a> Value<'a> {
         Some(Stamp { sec: sec? as i32, nanosec: nanosec?.try_into().ok()? })
     }
 
-    /// The value at a path, if it is one of this type.
-    pub(super) fn get<T: FromField>(&self, path: &str) -> Option<T> {
-        T::from_field(&self.at(path)?)
-    }
-
     pub(super) fn list_at(&self, path: &str) -> Vec<Value<'a>> {
         self.at(path).and_then(|list| list.elements()).unwrap_or_default()
     }
@@ -212,37 +221,5 @@ impl<'a> Value<'a> {
             Self::List(list) => Some(list.clone()),
             _ => None,
         }
-    }
-}
-
-fn part<'v, 'a>(value: Cow<'v, Value<'a>>, name: &str) -> Option<Cow<'v, Value<'a>>> {
-    if let Value::Time(sec, nanosec) = *value {
-        return match name {
-            "sec" | "secs" => Some(Cow::Owned(Value::Int(sec))),
-            "nanosec" | "nsecs" => Some(Cow::Owned(Value::Int(nanosec))),
-            _ => None,
-        };
-    }
-    match value {
-        Cow::Borrowed(Value::Struct(made, values)) => {
-            values.get(made.field(name)?.0).map(Cow::Borrowed)
-        }
-        Cow::Owned(Value::Struct(made, mut values)) => {
-            let (index, _) = made.field(name)?;
-            (index < values.len()).then(|| Cow::Owned(values.swap_remove(index)))
-        }
-        _ => None,
-    }
-}
-
-fn element<'v, 'a>(value: Cow<'v, Value<'a>>, index: usize) -> Option<Cow<'v, Value<'a>>> {
-    match value {
-        Cow::Borrowed(Value::Numbers(numbers)) => numbers.get(index).map(Cow::Owned),
-        Cow::Owned(Value::Numbers(numbers)) => numbers.get(index).map(Cow::Owned),
-        Cow::Borrowed(Value::List(list)) => list.get(index).map(Cow::Borrowed),
-        Cow::Owned(Value::List(mut list)) => {
-            (index < list.len()).then(|| Cow::Owned(list.swap_remove(index)))
-        }
-        _ => None,
     }
 }

@@ -132,11 +132,10 @@ fn a_wrong_line_is_an_error_with_its_number() {
         let found = error(&format!("{odom}{lines}\n{odom}"));
         assert_eq!(found, format!("line 2: {message}"), "{lines}");
     }
-    let jump = "ODOM 1 2 0 0 0 0 5 h 8000.25\n".repeat(10);
-    assert_eq!(
-        error(&format!("{odom}\n{jump}")),
-        "line 3: the clock jumps from 5.000 s to 8000.250 s, and stays there"
-    );
+    let jump = |lines| format!("{odom}\n{}", "ODOM 1 2 0 0 0 0 5 h 8000.25\n".repeat(lines));
+    assert_eq!(Log::of_bytes(jump(9).into()).unwrap().skipped().unwrap().off_clock, 9);
+    let expected = "line 3: the clock jumps from 5.000 s to 8000.250 s, and stays there";
+    assert_eq!(error(&jump(10)), expected);
     let long = format!("{odom}FLASER {}", "1 ".repeat(600_000));
     assert_eq!(error(&long), "line 2: the line is longer than 1,048,576 bytes");
 }

@@ -1,6 +1,6 @@
 //! Bags that ROS recorded in a session of turtlesim. They are not part of the repository.
 
-use std::{env, fs, path::PathBuf, process::Command};
+use std::{env, path::PathBuf, process::Command};
 
 use toposlam_logs::reader::Log;
 
@@ -62,22 +62,6 @@ fn a_bag_whose_chunks_are_out_of_order_is_read_in_order() {
     assert_eq!(times, [1_000_000_000, 2_000_000_000, 3_000_000_000]);
     let log = Log::open(&folder.join("no-messages.bag")).unwrap();
     assert_eq!((log.messages_total(), log.start(), log.read_all().count()), (0, None, 0));
-}
-
-#[test]
-fn a_truncated_recorded_bag_is_read_up_to_the_cut() {
-    let Some(folder) = folder() else { return };
-    for (name, step) in
-        [("example.bag", 9973), ("example-bz2.bag", 9973), ("example-unsorted-chunks.bag", 1)]
-    {
-        let bytes = fs::read(folder.join(name)).unwrap();
-        for length in (13..bytes.len()).step_by(step) {
-            let log = Log::of_bytes(bytes[..length].to_vec()).unwrap();
-            assert!(log.truncation().is_some(), "{name}: {length}");
-            let read = log.read_all().map(Result::unwrap).fold(0, |read, _| read + 1);
-            assert_eq!(read, log.messages_total());
-        }
-    }
 }
 
 /// Prints time, topic and byte sum of each message.

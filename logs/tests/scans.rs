@@ -57,6 +57,13 @@ fn a_scanner_is_where_the_transforms_of_its_frame_place_it() {
         assert_eq!(scan.scanner(), Point2::new(0.5, 0.25), "{name}");
         assert!((scan.heading() - PI).abs() < 1e-12, "{name}");
     }
+    // Half a metre ahead a plate is turned to the left, and on it the scanner again.
+    let plate = ("base_link", "plate", [0.5, 0.0, 0.2], LEFT);
+    let on_plate = ("plate", "laser", [0.1, 0.0, 0.1], LEFT);
+    let found = read(&[scan(), transforms("/tf_static", &[moving, plate, on_plate])]).unwrap();
+    let found = found.scan.unwrap();
+    assert!((found.scanner() - Point2::new(0.5, 0.1)).norm() < 1e-12, "{found:?}");
+    assert!((found.heading().abs() - PI).abs() < 1e-12, "{found:?}");
     // Upside down, what is left of the scanner is on its right.
     let over = ("base_footprint", "laser", [0.0; 3], [1.0, 0.0, 0.0, 0.0]);
     let found = readings(&[scan(), transforms("/tf_static", &[over])]);
@@ -69,11 +76,14 @@ fn a_scanner_that_is_not_connected_or_not_level_is_an_error() {
     let [_, _, half, _] = LEFT;
     let apart = "its frame \"laser\" is not connected to the robot: no transform leads from it to base_link, \
         base_footprint, base";
+    // The frames `plate` and `laser` may stand in a circle.
     for (parent, turn, message) in [
         ("map", LEVEL, apart),
+        ("plate", LEVEL, apart),
         ("base_link", [half, 0.0, 0.0, half], "its frame \"laser\" is not level"),
     ] {
-        let transforms = transforms("/tf", &[(parent, "laser", [0.0; 3], turn)]);
+        let circle = ("laser", "plate", [0.0; 3], LEVEL);
+        let transforms = transforms("/tf", &[(parent, "laser", [0.0; 3], turn), circle]);
         let error = read(&[scan(USUAL, &[1.0]), transforms]).unwrap_err();
         assert!(error.ends_with(&format!(": message 1, on /scan: {message}")), "{error}");
     }

@@ -9,7 +9,6 @@ use super::super::{
     known_world::Known,
 };
 
-/// An event that was checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReportedEvent {
     /// From 1.
@@ -31,7 +30,6 @@ pub enum EventPose {
     Candidates(usize),
 }
 
-/// A pose in the known world.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PoseName {
     pub vertex: String,
@@ -57,7 +55,6 @@ pub struct ReportedVisit {
     pub length: Option<f64>,
 }
 
-/// What the robot saw of its marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum MarkerSeen {

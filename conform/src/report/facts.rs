@@ -80,7 +80,6 @@ pub struct Facts {
     pub drift: Option<f64>,
 }
 
-/// What the log records about its world.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RecordedWorld {
     pub world: String,
@@ -90,7 +89,6 @@ pub struct RecordedWorld {
     pub same_world: Option<bool>,
 }
 
-/// The known world.
 #[derive(Clone, Debug, Serialize)]
 pub struct WorldFact {
     pub name: String,
@@ -108,7 +106,6 @@ pub struct WorldFact {
     pub world: NamedWorld,
 }
 
-/// The smallest world that explains the log.
 #[derive(Clone, Debug, Serialize)]
 pub struct SmallestFound {
     pub vertices: usize,

@@ -37,14 +37,12 @@ pub struct ConformReports {
     pub required: Option<RequiredCoverage>,
 }
 
-/// A log that could not be checked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnreadLog {
     pub log: String,
     pub cause: String,
 }
 
-/// The cases that logs must cover.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RequiredCoverage {
     pub required: Vec<String>,
@@ -127,7 +125,6 @@ pub enum Allowed {
     Step(AllowedStep),
 }
 
-/// Where a message stands in a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MessagePlace {
     /// From 1.
@@ -149,7 +146,6 @@ pub struct CoveredCase {
     pub expected: bool,
 }
 
-/// A limit that was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Limit {
     /// The option of `conform` that raises it.
@@ -163,7 +159,6 @@ pub struct Limit {
     pub reached: ReachedLimit,
 }
 
-/// A known divergence that is tolerated.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ToleratedQuirk {
     pub name: String,

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use toposlam_logs::{
+    message::Message,
     messages::{self, ProjectMessage, Stamp},
     reader,
     recorder::{IMAGE, ODOM, SCAN},
@@ -29,27 +30,25 @@ impl Written {
         Self { writer, seconds: 5000 }
     }
 
-    fn stamp(&mut self) -> Stamp {
+    fn write<M: Message>(&mut self, topic: &str, message: impl FnOnce(Stamp) -> M) {
         self.seconds += 1;
-        Stamp::of(self.seconds * SECOND)
+        let stamp = Stamp::of(self.seconds * SECOND);
+        self.writer.write(topic, stamp.nanoseconds(), &message(stamp)).unwrap();
     }
 
     fn odometry(&mut self) {
-        let stamp = self.stamp();
-        let message = OdometryMessage::new(stamp, &Odometry::default(), Twist::default());
-        self.writer.write(ODOM, stamp.nanoseconds(), &message).unwrap();
+        self.write(ODOM, |at| OdometryMessage::new(at, &Odometry::default(), Twist::default()));
     }
 
     /// Odometry whose stamp is wrong.
     fn late_odometry(&mut self) {
-        let time = self.stamp().nanoseconds();
-        let stamp = Stamp::of(time - 100 * SECOND);
-        let message = OdometryMessage::new(stamp, &Odometry::default(), Twist::default());
-        self.writer.write(ODOM, time, &message).unwrap();
+        self.write(ODOM, |at| {
+            let late = Stamp { sec: at.sec - 100, ..at };
+            OdometryMessage::new(late, &Odometry::default(), Twist::default())
+        });
     }
 
     fn scan(&mut self) {
-        let stamp = self.stamp();
         let geometry = ScanGeometry {
             angle_min: -PI / 2.0,
             angle_increment: PI / 4.0,
@@ -57,21 +56,17 @@ impl Written {
             range_max: 9.0,
         };
         let scan = Scan::new(geometry, vec![1.0; 5], nalgebra::Isometry2::identity()).unwrap();
-        let message = LaserScanMessage::new(stamp, &scan);
-        self.writer.write(SCAN, stamp.nanoseconds(), &message).unwrap();
+        self.write(SCAN, |stamp| LaserScanMessage::new(stamp, &scan));
     }
 
     fn scene(&mut self) {
-        let stamp = self.stamp();
         let [place, status] = ["hallway", "clear"].map(str::to_owned);
-        let message = messages::Scene { stamp, place, status, ..messages::Scene::default() };
-        self.writer.write(messages::Scene::TOPIC, stamp.nanoseconds(), &message).unwrap();
+        let scene = messages::Scene { place, status, ..messages::Scene::default() };
+        self.write(messages::Scene::TOPIC, |stamp| messages::Scene { stamp, ..scene });
     }
 
     fn image(&mut self) {
-        let stamp = self.stamp();
-        let message = CompressedImage::new(stamp, b"no image");
-        self.writer.write(IMAGE, stamp.nanoseconds(), &message).unwrap();
+        self.write(IMAGE, |stamp| CompressedImage::new(stamp, b"no image"));
     }
 
     /// A robot that passes a junction, with all kinds of evidence.
@@ -86,27 +81,20 @@ impl Written {
 
     /// An arrival, and the door by which the robot leaves.
     fn visit(&mut self) {
-        let stamp = self.stamp();
         let form = [true, false, true, false];
-        let message = messages::Percept { stamp, degree: 2, form, ..messages::Percept::default() };
-        self.writer.write(messages::Percept::TOPIC, stamp.nanoseconds(), &message).unwrap();
-        let stamp = self.stamp();
-        let message = messages::Door { stamp, r#move: 1, door: 1 };
-        self.writer.write(messages::Door::TOPIC, stamp.nanoseconds(), &message).unwrap();
+        let percept = messages::Percept { degree: 2, form, ..messages::Percept::default() };
+        self.write(messages::Percept::TOPIC, |stamp| messages::Percept { stamp, ..percept });
+        self.write(messages::Door::TOPIC, |stamp| messages::Door { stamp, r#move: 1, door: 1 });
     }
 
     fn end(&mut self) {
-        let stamp = self.stamp();
-        let map = messages::Map::default();
-        self.writer.write(messages::Map::TOPIC, stamp.nanoseconds(), &map).unwrap();
-        let end = messages::End { ending: "mapped".to_owned(), ..messages::End::default() };
-        self.writer.write(messages::End::TOPIC, stamp.nanoseconds(), &end).unwrap();
+        self.write(messages::Map::TOPIC, |_| messages::Map::default());
+        let ending = "mapped".to_owned();
+        self.write(messages::End::TOPIC, |_| messages::End { ending, ..messages::End::default() });
     }
 
     fn open(self) -> (reader::Log, TopicMap) {
-        let log = reader::Log::of_bytes(self.writer.finish().unwrap()).unwrap();
-        let mapping = TopicMap::unambiguous(&log);
-        (log, mapping)
+        opened(self.writer.finish().unwrap())
     }
 
     fn extract(self, evidence: Evidence) -> Result<ExtractedRun, ExtractError> {
@@ -115,25 +103,30 @@ impl Written {
     }
 }
 
+fn opened(bytes: Vec<u8>) -> (reader::Log, TopicMap) {
+    let log = reader::Log::of_bytes(bytes).unwrap();
+    let mapping = TopicMap::unambiguous(&log);
+    (log, mapping)
+}
+
 #[test]
 fn the_first_source_of_events_that_is_complete_is_chosen() {
-    let source = |write: &[fn(&mut Written)]| {
+    const ALL: [fn(&mut Written); 4] =
+        [Written::scan, Written::image, Written::scene, Written::visit];
+    for (kinds, has_odometry, source) in [
+        (4, true, Some(Evidence::Recorded)),
+        (3, true, Some(Evidence::Scenes)),
+        (2, true, Some(Evidence::Images)),
+        (1, true, Some(Evidence::Laser)),
+        (1, false, None),
+    ] {
         let mut log = Written::new();
-        for write in write {
-            write(&mut log);
+        ALL.iter().take(kinds).for_each(|write| write(&mut log));
+        if has_odometry {
+            log.odometry();
         }
-        Evidence::of(&log.open().1)
-    };
-    assert_eq!(
-        source(&[Written::visit, Written::scene, Written::odometry]),
-        Some(Evidence::Recorded)
-    );
-    let all: [fn(&mut Written); 4] =
-        [Written::scan, Written::image, Written::scene, Written::odometry];
-    assert_eq!(source(&all), Some(Evidence::Scenes));
-    assert_eq!(source(&[Written::scan, Written::image, Written::odometry]), Some(Evidence::Images));
-    assert_eq!(source(&[Written::scan, Written::odometry]), Some(Evidence::Laser));
-    assert_eq!(source(&[Written::scan]), None);
+        assert_eq!(Evidence::of(&log.open().1), source);
+    }
 }
 
 #[test]
@@ -209,8 +202,7 @@ fn images_need_a_sensor() {
 #[test]
 fn a_robot_that_turned_back_is_not_one_at_a_junction_that_was_not_recognised() {
     let kinds = |line: &str| {
-        let log = reader::Log::of_bytes(line.as_bytes().to_vec()).unwrap();
-        let mapping = TopicMap::unambiguous(&log);
+        let (log, mapping) = opened(line.as_bytes().to_vec());
         let run = extract(&log, &mapping, &ExtractConfig::new(Evidence::Recorded), &()).unwrap();
         run.events.events.into_iter().map(|event| event.kind).collect::<Vec<_>>()
     };

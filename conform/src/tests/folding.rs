@@ -15,10 +15,8 @@ fn without_a_world_a_wrong_percept_is_a_contradiction_or_changes_the_doors() {
         let mut log = good.clone();
         assert_eq!(log.mutate(event, Mutation::Degree, 0), Shows::At(event));
         let mut events = log.recorded();
-        for arrival in events.events.iter_mut().filter_map(CheckedEvent::arrival_mut) {
-            arrival.form = None;
-        }
-        let found = divergence(&events, &with_folding(without_world()));
+        events.arrivals_mut().for_each(|arrival| arrival.form = None);
+        let found = divergence(&events, &driven(without_world(), FOLDING));
         assert!(found.event >= event, "{found:?}");
     }
 }
@@ -30,7 +28,7 @@ fn a_log_of_algorithm_1_diverges_at_the_first_door_that_the_explorer_does_not_ta
     let [one, other] = [&of_algorithm1, &of_folding].map(|events| bare(&events.events));
     let first = one.iter().zip(&other).position(|(one, other)| one != other).unwrap();
     let config = at_place(&place);
-    let found = divergence(&of_algorithm1, &with_folding(config.clone()));
+    let found = divergence(&of_algorithm1, &driven(config.clone(), FOLDING));
     assert_eq!((found.event, found.fault), (first, FaultClass::Algorithm));
     let DivergenceCause::Algorithm(departure) = found.cause else { panic!() };
     let [AllowedStep { door, purpose }] = departure.allowed[..] else { panic!() };
@@ -38,7 +36,7 @@ fn a_log_of_algorithm_1_diverges_at_the_first_door_that_the_explorer_does_not_ta
     assert!(matches!(purpose, StepPurpose::ExploreOpen(_) | StepPurpose::Test { .. }));
     // Nor is the other run one of Algorithm 1.
     assert_eq!(divergence(&of_folding, &config).fault, FaultClass::Algorithm);
-    let anyone = ConformConfig { driver: RunDriver::Anyone, ..config };
+    let anyone = driven(config, RunDriver::Anyone);
     assert_eq!(judged(&of_algorithm1, &anyone).divergence, None);
 }
 
@@ -46,7 +44,7 @@ fn a_log_of_algorithm_1_diverges_at_the_first_door_that_the_explorer_does_not_ta
 fn the_recorded_map_must_be_isomorphic_to_the_map_of_the_explorer() {
     let place = place();
     let mut events = good_log(&place).recorded();
-    let config = with_folding(at_place(&place));
+    let config = driven(at_place(&place), FOLDING);
     let mut map = MapRecord::of(&judged(&events, &config).algorithm.unwrap().run);
     events.map = Some(map.clone());
     assert_eq!(judged(&events, &config).divergence, None);
@@ -73,17 +71,4 @@ fn the_recorded_map_must_be_isomorphic_to_the_map_of_the_explorer() {
     events.map = Some(map);
     let found = divergence(&events, &config);
     assert_eq!(found.cause, DivergenceCause::Map { algorithm: FOLDING });
-}
-
-#[test]
-fn a_log_is_followed_up_to_the_bound_on_darts() {
-    let place = place();
-    let events = good_log(&place).recorded();
-    let bounded = ConformConfig { dart_bound: 3, ..with_folding(at_place(&place)) };
-    let judgement = judged(&events, &bounded);
-    assert_eq!(judgement.verdict(), ConformVerdict::Incomplete);
-    let limits = judgement.limits();
-    let [ReachedLimit::Darts { algorithm: FOLDING, bound: 3, .. }] = limits[..] else {
-        panic!("{limits:?}")
-    };
 }

@@ -117,10 +117,8 @@ fn a_log_without_odometry_is_not_compared() {
     let measured = judged(&events, &by_anyone()).measured;
     assert_eq!(measured.measured, measured.moves);
     assert!(measured.compared > 0);
-    for event in &mut events.events {
-        if let CheckedKind::Arrival { hallway, .. } = &mut event.kind {
-            *hallway = None;
-        }
+    for event in (2..events.events.len()).step_by(2) {
+        *hallway_before(&mut events, event) = None;
     }
     let judgement = judged(&events, &by_anyone());
     assert_eq!((judgement.measured.measured, judgement.measured.compared), (0, 0));
@@ -128,17 +126,21 @@ fn a_log_without_odometry_is_not_compared() {
 }
 
 /// The measurement of the hallway before an arrival.
-fn hallway_before(events: &mut RunEvents, event: usize) -> &mut HallwayMeasurement {
+fn hallway_before(events: &mut RunEvents, event: usize) -> &mut Option<HallwayMeasurement> {
     match &mut events.events[event].kind {
-        CheckedKind::Arrival { hallway: Some(hallway), .. } => hallway,
+        CheckedKind::Arrival { hallway, .. } => hallway,
         other => panic!("{event}: {other:?}"),
     }
+}
+
+fn lengthen_hallway(events: &mut RunEvents, event: usize, metres: f64) {
+    hallway_before(events, event).as_mut().unwrap().length += metres;
 }
 
 /// The fault at an event, if the hallway before it is longer by this, in metres.
 fn with_longer_hallway(metres: f64, event: usize, quirks: &Quirks) -> Option<Divergence> {
     let mut events = good_run();
-    hallway_before(&mut events, event).length += metres;
+    lengthen_hallway(&mut events, event, metres);
     judge(events, &by_anyone(), quirks, &()).unwrap().divergence
 }
 
@@ -166,10 +168,8 @@ fn the_visits_of_a_run_are_identified_by_its_folded_trail() {
         CheckedKind::Arrival { arrival, hallway, .. } => Some((arrival.degree, *hallway)),
         _ => None,
     });
-    let arrivals: Vec<_> = arrivals.collect();
-    assert!(arrivals.len() > 5);
     let of_visits = visits.iter().map(|visit| (visit.darts.len() as u32, visit.arrived));
-    assert_eq!(of_visits.collect::<Vec<_>>(), arrivals);
+    assert!(visits.len() > 5 && of_visits.eq(arrivals), "{visits:?}");
     let mut junctions: Vec<_> = visits.iter().map(|visit| visit.darts.iter().min()).collect();
     junctions.sort_unstable();
     junctions.dedup();
@@ -187,11 +187,8 @@ fn only_the_measurement_that_is_tolerated_is_forgotten() {
         let cause = DivergenceCause::Measurement { between: [0, 2], earlier: [4, 6], measurement };
         let mut events = good.clone();
         events.forget_measurement(&cause);
-        let is_left = |at: usize| match &events.events[at].kind {
-            CheckedKind::Arrival { arrival, hallway, .. } => {
-                (arrival.form.is_some(), hallway.is_some())
-            }
-            _ => panic!("{at}"),
+        let mut is_left = |at: usize| {
+            (arrival_at(&mut events, at).form.is_some(), hallway_before(&mut events, at).is_some())
         };
         assert_eq!(is_left(4), (true, true));
         is_left(2)
@@ -209,13 +206,9 @@ fn only_the_measurement_that_is_tolerated_is_forgotten() {
 fn in_a_known_world_hallways_are_compared_without_a_marker() {
     let (plan, facing) = place();
     let mut events = good_run();
-    for arrival in events.events.iter_mut().filter_map(CheckedEvent::arrival_mut) {
-        arrival.sighting = None;
-    }
+    events.arrivals_mut().for_each(|arrival| arrival.sighting = None);
     let unknown = ConformConfig { marker: &NoMarker, ..by_anyone() };
-    let graph = plan.graph().clone();
-    let states = vec![GraphWorld::with_marker(&graph, &NoMarker, facing).state()];
-    let known = ConformConfig { world: Some(KnownWorld { graph, states }), ..unknown.clone() };
+    let known = in_world(&plan, Some(facing), &unknown);
     let [known, unknown] =
         [known, unknown].map(|config| judged(&events, &config).measured.compared);
     assert!(known > unknown, "{known} {unknown}");
@@ -247,7 +240,7 @@ fn a_shorter_log_contradicts_itself_in_the_same_way() {
         let good = good.recorded();
         for event in (2..good.events.len()).step_by(6) {
             let mut events = good.clone();
-            hallway_before(&mut events, event).length += 6.0;
+            lengthen_hallway(&mut events, event, 6.0);
             // Odometry that drifts: on a walk that is removed, the robot's frame has turned.
             for (index, event) in events.events.iter_mut().enumerate() {
                 if let Some(entry) = event.arrival_mut().and_then(|arrival| arrival.entry.as_mut())

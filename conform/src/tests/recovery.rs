@@ -8,18 +8,15 @@ use toposlam_model::{
 use super::*;
 
 pub(super) fn recovering() -> MappingMethod {
-    let (noise, retries_blocked) = (Some(log_noise()), true);
-    MappingMethod::Recovering(RecoveryConfig {
-        noise,
-        retries_blocked,
-        ..RecoveryConfig::default()
-    })
+    let noise = Some(log_noise());
+    let config = RecoveryConfig { noise, retries_blocked: true, ..RecoveryConfig::default() };
+    MappingMethod::Recovering(config)
 }
 
 /// A place, and what a robot that recovers is checked against there.
 fn recovering_in(name: &str) -> (Place, ConformConfig) {
     let place = place_in(name);
-    let config = ConformConfig { driver: RunDriver::Method(recovering()), ..at_place(&place) };
+    let config = driven(at_place(&place), RunDriver::Method(recovering()));
     (place, config)
 }
 
@@ -117,7 +114,7 @@ fn a_robot_turns_back_exactly_when_its_budget_of_moves_needs_it() {
         let budget = RunBudget { moves: Some(most), ..RunBudget::default() };
         let settings = RunSettings { budget, ..RunSettings::new(FOLDING, DARTS) };
         let (events, mapped) = log_with(&settings, &place, None, 1);
-        let config = |budget| ConformConfig { budget, ..with_folding(at_place(&place)) };
+        let config = |budget| ConformConfig { budget, ..driven(at_place(&place), FOLDING) };
         let judgement = judged(&events, &config(budget));
         assert_eq!(judgement.divergence, None, "{most}");
         assert_eq!(mapped.is_some(), judgement.verdict() == ConformVerdict::Conforms);

@@ -92,14 +92,14 @@ fn arrivals_are_counted_by_the_shape_of_their_junction() {
 fn the_candidates_are_the_poses_that_are_left() {
     let (plan, facing) = place_in("shape-6");
     let events = log(&(plan.clone(), facing), 1).recorded();
-    let anywhere = in_world(&plan, None);
+    let anywhere = anywhere_in(&plan);
     let judgement = judged(&events, &anywhere);
     // In a known world none is searched.
     assert_eq!((judgement.candidates(), judgement.smallest), (1, None));
     assert_eq!(judged(&events, &without_world()).candidates(), 1);
     // Before the first move, each pose with as many doors is one.
     let begun = RunEvents { has_head: false, ..events.up_to(0) };
-    let anywhere = ConformConfig { driver: RunDriver::Anyone, ..anywhere };
+    let anywhere = driven(anywhere, RunDriver::Anyone);
     let graph = plan.graph();
     let degree = |dart| graph.degree(graph.vertex(dart));
     let alike = graph.darts().filter(|&dart| degree(dart) == degree(facing)).count();
@@ -135,8 +135,7 @@ fn an_event_that_is_earlier_than_the_one_before_it_is_named() {
     let before = events.events[2].source.time;
     // Two events may have the same time.
     events.events[3].source.time = before;
-    let error =
-        |events: &RunEvents| judge(events.clone(), &without_world(), &Quirks::default(), &()).err();
+    let error = |events: &RunEvents| judgement(events, &without_world()).err();
     assert_eq!(error(&events), None);
     events.events[3].source.time = before - 1;
     let order = OutOfOrder { time: before - 1, before };

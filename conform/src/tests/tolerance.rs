@@ -75,7 +75,7 @@ fn what_follows_a_divergence_is_not_tolerated() {
 fn a_percept_is_not_tolerated_if_it_is_not_known_what_was_expected() {
     let place = place_in("building-12");
     // From any start, different percepts are expected.
-    let anywhere = ConformConfig { driver: RunDriver::Anyone, ..in_world(&place.0, None) };
+    let anywhere = driven(anywhere_in(&place.0), RunDriver::Anyone);
     let wrong = with_more_doors(&log(&place, 1).recorded(), &[0], 9);
     let (_, judgement) = counted(&wrong, &anywhere, &everywhere(&["percept"]));
     assert_eq!(place_of(&judgement.divergence.unwrap()), (0, "percept"));
@@ -86,7 +86,7 @@ fn a_percept_is_not_tolerated_if_it_is_not_known_what_was_expected() {
 fn a_percept_is_not_tolerated_at_an_event_that_diverges_in_another_way() {
     let place = place_in("building-12");
     let good = log(&place, 1).recorded();
-    let anyone = ConformConfig { driver: RunDriver::Anyone, ..at_place(&place) };
+    let anyone = driven(at_place(&place), RunDriver::Anyone);
     for (config, cause) in [(anyone, "percept"), (without_world(), "contradiction")] {
         let quirks = everywhere(&[cause]);
         // Two events of which each alone is tolerated.
@@ -130,7 +130,7 @@ fn all_contradictions_of_algorithm_1_need_two_judgements() {
 #[test]
 fn contradictions_of_the_folding_explorer_are_tolerated_where_the_place_is_known() {
     let good = log_of(FOLDING, &place_in("building-12"), 1).recorded();
-    let config = with_folding(without_world());
+    let config = driven(without_world(), FOLDING);
     let quirks = everywhere(&["contradiction"]);
     let (mut known, mut by_marker) = (Vec::new(), 0);
     for event in (2..good.events.len()).step_by(2) {

@@ -6,12 +6,10 @@ use crate::{
     value::Value,
 };
 
-/// The value of a line, which begins with its keyword.
+/// The value of a line, which begins with its keyword; an error if the line does not have the fields of the
+/// definition, and no others. No bytes make it panic.
 ///
 /// Takes at most 256 bytes of memory for each byte of the line and for each field of the definition.
-///
-/// # Errors
-/// If the line does not have the fields of the definition, and no others. No bytes make it panic.
 pub(crate) fn decode<'a>(
     definition: &'a Definition,
     line: &'a [u8],

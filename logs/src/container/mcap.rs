@@ -1,6 +1,6 @@
 //! MCAP files (mcap.dev/spec): a record has an opcode, a length and its content.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::{collections::BTreeMap, io, ops::Range};
 
 use super::{
     Compression, Failure, FileStructure, Listener, Record, Section, u16_at, u32_at, u64_at,
@@ -22,7 +22,7 @@ const MESSAGE_INDEX: u8 = 7;
 pub(super) const STATISTICS: u8 = 11;
 pub(super) const DATA_END: u8 = 15;
 
-pub(super) const HEAD: usize = 9;
+const HEAD: usize = 9;
 /// The fields before the bytes of a message: channel, sequence, and two times.
 const MESSAGE_HEAD: usize = 22;
 
@@ -79,13 +79,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<FileS
     let mut at = MAGIC.len() as u64;
     let mut total = None;
     loop {
-        let head = window.get(at, HEAD as u64).map_err(unreadable(at))?;
-        let head = head.and_then(|head| Some((*head.first()?, u64_at(head, 1)?)));
-        let content = head.and_then(|(op, length)| {
-            let start = at + HEAD as u64;
-            Some((op, start..start.checked_add(length)?))
-        });
-        let Some((op, content)) = content.filter(|(_, content)| window.within(content.end)) else {
+        let Some((op, content)) = record_at(&mut window, at).map_err(unreadable(at))? else {
             let cause = if at == source.length() {
                 TruncationKind::End
             } else {
@@ -116,6 +110,15 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<FileS
         }
     }
     Ok(scan)
+}
+
+/// The type of the record at an offset, and where its content is; `None` if the file ends before it.
+pub(super) fn record_at(window: &mut Window<'_>, at: u64) -> io::Result<Option<(u8, Range<u64>)>> {
+    let head = window.get(at, HEAD as u64)?;
+    let head = head.and_then(|head| Some((*head.first()?, u64_at(head, 1)?)));
+    let start = at + HEAD as u64;
+    let content = head.and_then(|(op, length)| Some((op, start..start.checked_add(length)?)));
+    Ok(content.filter(|(_, content)| window.within(content.end)))
 }
 
 /// Reads one record; `total` becomes the number of messages by the statistics of the file.

@@ -6,7 +6,7 @@ use crc32fast::Hasher;
 
 use super::{
     Failure,
-    mcap::{DATA_END, FOOTER, HEAD, MAGIC, STATISTICS},
+    mcap::{DATA_END, FOOTER, MAGIC, STATISTICS, record_at},
     u32_at, u64_at,
 };
 use crate::{
@@ -28,12 +28,8 @@ pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
     let mut window = Window::new(source);
     let mut at = MAGIC.len() as u64;
     let mut data_end = None;
-    while let Some(head) = window.get(at, HEAD as u64)? {
-        let (Some(&op), Some(length)) = (head.first(), u64_at(head, 1)) else { break };
-        let content = at + HEAD as u64;
-        let Some(end) = content.checked_add(length).filter(|end| window.within(*end)) else {
-            break;
-        };
+    while let Some((op, Range { start: content, end })) = record_at(&mut window, at)? {
+        let length = end - content;
         match op {
             // The checksum is at the end of the record, and covers the fields before it.
             ATTACHMENT if length >= 4 => {

@@ -116,15 +116,3 @@ fn an_error_has_its_byte() {
         assert_eq!(decode(&definition(dialect, text), bytes).unwrap_err().to_string(), message);
     }
 }
-
-proptest::proptest! {
-    #[test]
-    fn no_bytes_make_it_panic(bytes: Vec<u8>, little: bool) {
-        let _ = decode(&definition(Dialect::Ros1, TEXT), &bytes);
-        let whole = [&[0, u8::from(little), 0, 0][..], &bytes].concat();
-        let ros2 = definition(Dialect::Ros2, TEXT);
-        if let Ok(value) = decode(&ros2, &whole) {
-            let _ = (value.at("parts[0].x"), value.at("doors").map(|doors| doors.elements()));
-        }
-    }
-}

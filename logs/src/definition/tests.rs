@@ -95,10 +95,3 @@ fn a_message_is_neither_deep_nor_wide_without_end() {
     assert!(ros1(&late).is_ok());
     assert!(ros1(&"int8 x".repeat(MOST_BYTES)).unwrap_err().contains("longer than"));
 }
-
-proptest::proptest! {
-    #[test]
-    fn no_text_makes_it_panic(text in "([a-zB/ =#<\\[\\]0-9]|===\n|MSG: |\n|int8 |B[a-z]*){0,60}") {
-        let _ = (ros1(&text), ros2(&text));
-    }
-}

@@ -21,6 +21,24 @@ pub trait RunObserver {
 
 impl RunObserver for () {}
 
+impl<O: RunObserver> RunObserver for Option<O> {
+    fn event(&mut self, event: &Event) {
+        if let Some(observer) = self {
+            observer.event(event);
+        }
+    }
+
+    fn mapping(&mut self, journey: &MapWalk, event: MappingEvent) {
+        if let Some(observer) = self {
+            observer.mapping(journey, event);
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.as_ref().is_some_and(RunObserver::stop)
+    }
+}
+
 impl<O: RunObserver + ?Sized> RunObserver for &mut O {
     fn event(&mut self, event: &Event) {
         (**self).event(event);
