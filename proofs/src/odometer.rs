@@ -99,8 +99,7 @@ pub struct Counterexample {
 /// The choices are separated by commas, in the format of `--choices`.
 impl fmt::Display for Counterexample {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        write!(out, "it does not hold that {}; choices ", self.claim)?;
-        write!(out, "{}", listed(&self.choices))
+        write!(out, "it does not hold that {}; choices {}", self.claim, listed(&self.choices))
     }
 }
 

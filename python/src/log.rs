@@ -24,7 +24,6 @@ use toposlam_model::{
     enumerate::Watch,
     percept::Door,
 };
-use toposlam_vision::geometry::from_robot;
 
 use crate::{
     error::{error, interrupted},
@@ -272,27 +271,11 @@ pub(crate) fn log_picture(py: Python<'_>, reader: &LogReader, title: &str) -> Py
             if watcher.stop() {
                 return Ok(None);
             }
-            let entry = entry.map_err(|cause| cause.to_string())?;
-            add_scan(&mut picture, entry);
+            picture.add(entry.map_err(|cause| cause.to_string())?);
         }
         Ok::<_, String>(Some(laser_run_svg(&picture)))
     })?;
     drawn.map_err(|cause| reader.error(py, &cause))?.ok_or_else(interrupted)
-}
-
-fn add_scan(picture: &mut LaserRunPicture, entry: Entry) {
-    let Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) = entry.content
-    else {
-        return;
-    };
-    let [east, north] = odometry.position;
-    if [east, north, odometry.heading].iter().all(|number| number.is_finite()) {
-        picture.way.push(odometry.position);
-        let odometry_from_robot = from_robot(&odometry);
-        for hit in scan.hits() {
-            picture.hits.add((odometry_from_robot * hit).into());
-        }
-    }
 }
 
 fn log_error(py: Python<'_>, path: &Path, cause: &dyn Display) -> PyErr {
