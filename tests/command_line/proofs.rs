@@ -14,7 +14,7 @@ fn case_with_a_walk() -> (&'static Lemma, Vec<u8>) {
         let mut choices = Vec::new();
         loop {
             match lemma.replay(&choices) {
-                Err(ChoicesError::TooFew { needed, .. }) => choices.resize(needed, 0),
+                Err(ChoicesError::Length { needed, .. }) => choices.resize(needed, 0),
                 shown => return (lemma, choices, shown.unwrap()),
             }
         }
