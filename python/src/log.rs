@@ -5,7 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use pyo3::{prelude::*, types::PyDict};
+use pyo3::{
+    prelude::*,
+    types::{IntoPyDict, PyDict},
+};
 use toposlam_draw::picture::{LaserRunPicture, laser_run_svg};
 use toposlam_logs::{
     Format,
@@ -129,21 +132,15 @@ impl LogReader {
     /// The head of the log: world, start, marker and algorithm, as far as they are recorded.
     #[getter]
     fn head<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let head = PyDict::new(py);
-        if let Some(run) = &self.run {
-            let fields = [
+        let fields = self.run.iter().flat_map(|run| {
+            [
                 ("world", &run.world),
                 ("start", &run.start),
                 ("marker", &run.marker),
                 ("algorithm", &run.algorithm),
-            ];
-            for (name, text) in fields {
-                if !text.is_empty() {
-                    head.set_item(name, text)?;
-                }
-            }
-        }
-        Ok(head)
+            ]
+        });
+        fields.filter(|(_, text)| !text.is_empty()).into_py_dict(py)
     }
 
     /// Reads the tables.
