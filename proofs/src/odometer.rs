@@ -99,8 +99,7 @@ pub struct Counterexample {
 /// The choices are separated by commas, in the format of `--choices`.
 impl fmt::Display for Counterexample {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        write!(out, "it does not hold that {}; choices ", self.claim)?;
-        write!(out, "{}", listed(&self.choices))
+        write!(out, "it does not hold that {}; choices {}", self.claim, listed(&self.choices))
     }
 }
 
@@ -117,7 +116,7 @@ mod tests {
     fn exhaust(
         lemma: impl FnMut(&mut ChoiceOdometer) -> CaseResult,
     ) -> Result<u64, Counterexample> {
-        ChoiceOdometer::exhaust(lemma, &mut |_| {})
+        ChoiceOdometer::exhaust(lemma, &mut |_| ControlFlow::Continue(()))
     }
 
     #[test]

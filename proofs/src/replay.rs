@@ -25,18 +25,11 @@ pub enum ChoicesError {
         /// The number of possibilities at this place.
         of: u8,
     },
-    /// The list is too short.
-    TooFew {
+    /// The list is too short or too long.
+    Length {
         /// The number of choices in the list.
         choices: usize,
-        /// The least number of choices of a case that begins so.
-        needed: usize,
-    },
-    /// The list is too long.
-    TooMany {
-        /// The number of choices in the list.
-        choices: usize,
-        /// The number of choices of the case.
+        /// The number of choices of a case that begins so; the least one, if the list is too short.
         needed: usize,
     },
 }
@@ -47,10 +40,10 @@ impl fmt::Display for ChoicesError {
             Self::TooHigh { place, choice, of } => {
                 write!(out, "choice number {place} is {choice}; it is at most {}", of - 1)
             }
-            Self::TooFew { choices, needed } => {
+            Self::Length { choices, needed } if choices < needed => {
                 write!(out, "a case that begins so has at least {needed} choices, not {choices}")
             }
-            Self::TooMany { choices, needed } => {
+            Self::Length { choices, needed } => {
                 write!(out, "the case that begins so has {needed} choices, not {choices}")
             }
         }
@@ -79,8 +72,7 @@ impl CaseReplay {
         let (choices, needed) = (replay.choices.len(), replay.made);
         match replay.misfit {
             Some(misfit) => Err(misfit),
-            None if needed > choices => Err(ChoicesError::TooFew { choices, needed }),
-            None if needed < choices => Err(ChoicesError::TooMany { choices, needed }),
+            None if needed != choices => Err(ChoicesError::Length { choices, needed }),
             None => Ok(ReplayedCase { case, exhibits: replay.exhibits }),
         }
     }

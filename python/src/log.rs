@@ -5,7 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use pyo3::{prelude::*, types::PyDict};
+use pyo3::{
+    prelude::*,
+    types::{IntoPyDict, PyDict},
+};
 use toposlam_draw::picture::{LaserRunPicture, laser_run_svg};
 use toposlam_logs::{
     Format,
@@ -24,7 +27,6 @@ use toposlam_model::{
     enumerate::Watch,
     percept::Door,
 };
-use toposlam_vision::geometry::from_robot;
 
 use crate::{
     error::{error, interrupted},
@@ -130,21 +132,15 @@ impl LogReader {
     /// The head of the log: world, start, marker and algorithm, as far as they are recorded.
     #[getter]
     fn head<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let head = PyDict::new(py);
-        if let Some(run) = &self.run {
-            let fields = [
+        let fields = self.run.iter().flat_map(|run| {
+            [
                 ("world", &run.world),
                 ("start", &run.start),
                 ("marker", &run.marker),
                 ("algorithm", &run.algorithm),
-            ];
-            for (name, text) in fields {
-                if !text.is_empty() {
-                    head.set_item(name, text)?;
-                }
-            }
-        }
-        Ok(head)
+            ]
+        });
+        fields.filter(|(_, text)| !text.is_empty()).into_py_dict(py)
     }
 
     /// Reads the tables.
@@ -272,27 +268,11 @@ pub(crate) fn log_picture(py: Python<'_>, reader: &LogReader, title: &str) -> Py
             if watcher.stop() {
                 return Ok(None);
             }
-            let entry = entry.map_err(|cause| cause.to_string())?;
-            add_scan(&mut picture, entry);
+            picture.add(entry.map_err(|cause| cause.to_string())?);
         }
         Ok::<_, String>(Some(laser_run_svg(&picture)))
     })?;
     drawn.map_err(|cause| reader.error(py, &cause))?.ok_or_else(interrupted)
-}
-
-fn add_scan(picture: &mut LaserRunPicture, entry: Entry) {
-    let Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) = entry.content
-    else {
-        return;
-    };
-    let [east, north] = odometry.position;
-    if [east, north, odometry.heading].iter().all(|number| number.is_finite()) {
-        picture.way.push(odometry.position);
-        let odometry_from_robot = from_robot(&odometry);
-        for hit in scan.hits() {
-            picture.hits.add((odometry_from_robot * hit).into());
-        }
-    }
 }
 
 fn log_error(py: Python<'_>, path: &Path, cause: &dyn Display) -> PyErr {

@@ -27,29 +27,25 @@ const STUB: [f64; 2] = [1.3, 0.36];
 pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
     let maps: Vec<OpenGraph> = maps.iter().map(OpenGraph::from).collect();
     let last = maps.last().and_then(Whole::new);
-    let mut stages: Vec<_> = maps.iter().map(|map| stage(map, last.as_ref())).collect();
+    let stages: Vec<_> = maps.iter().map(|map| stage(map, last.as_ref())).collect();
     let drawings = stages.iter().flatten().map(|(_, drawing)| drawing.extent());
     let room = Extent::EMPTY.joined(drawings);
-    let svg = |(stage, map): (&mut Option<(EmbeddedGraph, Drawing)>, &OpenGraph)| {
-        let Some((graph, drawing)) = stage else {
-            return String::new();
-        };
-        drawing.room = room;
-        svg::document(
-            &picture(graph, &names(graph, drawing.known), map.marker()),
-            drawing,
-            svg::Legend::Elsewhere,
-        )
+    let svg = |(stage, map): (Option<(EmbeddedGraph, Drawing)>, &OpenGraph)| {
+        let (graph, drawing) = stage?;
+        Some(document(map, &graph, &Drawing { room, ..drawing }))
     };
-    stages.iter_mut().zip(&maps).map(svg).collect()
+    stages.into_iter().zip(&maps).map(|stage| svg(stage).unwrap_or_default()).collect()
 }
 
 /// A picture of a graph with its open darts; `None` of an empty one.
 pub fn open_svg(map: &OpenGraph) -> Option<String> {
     let (graph, drawing) = stage(map, None)?;
-    let names = names(&graph, drawing.known);
-    let picture = picture(&graph, &names, map.marker());
-    Some(svg::document(&picture, &drawing, svg::Legend::Elsewhere))
+    Some(document(map, &graph, &drawing))
+}
+
+fn document(map: &OpenGraph, graph: &EmbeddedGraph, drawing: &Drawing) -> String {
+    let names = names(graph, drawing.known);
+    svg::document(&picture(graph, &names, map.marker()), drawing, svg::Legend::Elsewhere)
 }
 
 /// Where the parts of a graph with open darts are drawn.

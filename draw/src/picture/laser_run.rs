@@ -6,6 +6,12 @@ use std::{
     fmt::Write as _,
 };
 
+use toposlam_logs::{
+    entries::{Content, Entry},
+    record::{EventKind, Frame},
+};
+use toposlam_vision::geometry::from_robot;
+
 use super::{
     geometry::{Extent, Point},
     run::{pieces, ramp},
@@ -38,6 +44,25 @@ pub struct DrawnVisit {
     pub exit: Option<usize>,
 }
 
+impl LaserRunPicture {
+    /// Adds what a scan hit, and where the robot was. An entry without a scan, or without a finite pose, adds nothing.
+    pub fn add(&mut self, entry: Entry) {
+        let Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) =
+            entry.content
+        else {
+            return;
+        };
+        let [east, north] = odometry.position;
+        if [east, north, odometry.heading].iter().all(|number| number.is_finite()) {
+            self.way.push(odometry.position);
+            let odometry_from_robot = from_robot(&odometry);
+            for hit in scan.hits() {
+                self.hits.add((odometry_from_robot * hit).into());
+            }
+        }
+    }
+}
+
 /// The cells of a square grid that scans have hit.
 #[derive(Clone, Debug, Default)]
 pub struct ScanHits {
@@ -46,12 +71,12 @@ pub struct ScanHits {
 
 impl ScanHits {
     /// The side of a cell, in metres.
-    pub const CELL: f64 = 0.2;
+    const CELL: f64 = 0.2;
     /// The most cells that are kept.
     const MOST: usize = 1 << 20;
 
     /// Adds a point, in metres. Beyond a million cells no new ones are added.
-    pub fn add(&mut self, point: [f64; 2]) {
+    pub(crate) fn add(&mut self, point: [f64; 2]) {
         let cell = point.map(|part| (part / Self::CELL).floor() as i32);
         if self.counts.len() < Self::MOST {
             self.counts.entry(cell).or_default();

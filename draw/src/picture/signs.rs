@@ -46,17 +46,15 @@ pub(super) fn signs(picture: &WorldPicture, drawing: &Drawing) -> Vec<Sign> {
                 let at = drawing.centres[vertex] + Point::polar(direction, away);
                 Sign::Arrow { at, direction, scale }
             }
-            MarkerPart::OnEdge(dart) => match on_edge(picture, drawing, dart) {
-                Some((at, direction)) => Sign::Bar { at, direction, scale },
-                None => continue,
-            },
-            MarkerPart::OnEdgeAlong(dart) => match on_edge(picture, drawing, dart) {
-                Some((middle, direction)) => {
+            MarkerPart::OnEdge(dart) | MarkerPart::OnEdgeAlong(dart) => {
+                let Some((middle, direction)) = on_edge(picture, drawing, dart) else { continue };
+                if matches!(part, MarkerPart::OnEdge(_)) {
+                    Sign::Bar { at: middle, direction, scale }
+                } else {
                     let at = middle - Point::polar(direction, 0.5 * ARROW * scale);
                     Sign::Arrow { at, direction, scale }
                 }
-                None => continue,
-            },
+            }
         };
         signs.push(sign);
     }

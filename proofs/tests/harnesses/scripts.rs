@@ -164,7 +164,8 @@ fn a_run_that_was_cut_short_is_refused_wherever_it_was_cut() {
 #[test]
 fn the_list_of_names_is_that_of_the_table() {
     let listed = fs::read_to_string(here("kani/harnesses.txt")).unwrap();
-    let rows: String = table().iter().map(|(name, unwind)| format!("{name} {unwind}\n")).collect();
+    let row = |(name, unwind)| format!("{name} {unwind}\n");
+    let rows: String = table().into_iter().map(row).collect();
     assert!(listed == rows, "kani/harnesses.txt must be:\n{rows}");
     let output = script("verify", &["--list"], "");
     assert!(String::from_utf8(output.stdout).unwrap().lines().eq(table().into_keys()));

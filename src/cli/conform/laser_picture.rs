@@ -5,12 +5,7 @@ use std::{ffi::OsStr, path::Path};
 use toposlam_conform::{
     AddedMarker, CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction,
 };
-use toposlam_logs::{
-    entries::Content,
-    record::{EventKind, Frame},
-    topic_map::Role,
-};
-use toposlam_vision::geometry::from_robot;
+use toposlam_logs::topic_map::Role;
 
 use super::{CliError, JudgedLog};
 use crate::{
@@ -57,20 +52,7 @@ fn scanned(path: &Path, judged: &JudgedLog) -> Result<LaserRunPicture, CliError>
     let bound = mapping.bind(log).map_err(|error| failed(&error))?;
     let mut picture = LaserRunPicture::default();
     for entry in log.entries(&bound) {
-        let Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) =
-            entry.map_err(|error| failed(&error))?.content
-        else {
-            continue;
-        };
-        let [east, north] = odometry.position;
-        if ![east, north, odometry.heading].iter().all(|number| number.is_finite()) {
-            continue;
-        }
-        picture.way.push(odometry.position);
-        let odometry_from_robot = from_robot(&odometry);
-        for hit in scan.hits() {
-            picture.hits.add((odometry_from_robot * hit).into());
-        }
+        picture.add(entry.map_err(|error| failed(&error))?);
     }
     Ok(picture)
 }

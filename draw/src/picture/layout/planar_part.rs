@@ -9,14 +9,10 @@ pub(super) fn planar_part(graph: &EmbeddedGraph) -> Option<EmbeddedGraph> {
     let mut part = with_edges(graph, &kept)?;
     for (dart, other) in graph.edges() {
         if !kept[dart.at()] {
-            kept[dart.at()] = true;
-            kept[other.at()] = true;
-            match with_edges(graph, &kept) {
-                Some(more) if more.genus() == 0 => part = more,
-                _ => {
-                    kept[dart.at()] = false;
-                    kept[other.at()] = false;
-                }
+            let mut more = kept.clone();
+            (more[dart.at()], more[other.at()]) = (true, true);
+            if let Some(planar) = with_edges(graph, &more).filter(|more| more.genus() == 0) {
+                (part, kept) = (planar, more);
             }
         }
     }

@@ -95,7 +95,8 @@ impl<'a> Ground<'a> {
         page.hallways(self.hallways());
         let walls = walls(self.plan);
         let ends = walls.iter().map(|wall| wall.span.map(|end| page.at(self.at(wall.foot(end)))));
-        let lines: String = ends.map(|[from, to]| format!("M{from}L{to}")).collect();
+        let line = |[from, to]: [Point; 2]| format!("M{from}L{to}");
+        let lines: String = ends.map(line).collect();
         let stroke =
             format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\" stroke-linecap=\"square\"");
         page.path("class=\"walls\"", &lines, &stroke);

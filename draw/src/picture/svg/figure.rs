@@ -25,7 +25,9 @@ const EDGES: [&str; INKS + 1] =
 
 impl Page {
     pub(super) fn drawing(&mut self, picture: &WorldPicture, drawing: &Drawing, signs: &[Sign]) {
-        self.floor(drawing);
+        if drawing.floor.is_some() {
+            self.hallways(drawing.hallways());
+        }
         self.edges(drawing);
         self.discs(drawing);
         if drawing.size.knob > 0.0 {
@@ -36,14 +38,7 @@ impl Page {
         }
     }
 
-    /// The hallways of a floor plan.
-    fn floor(&mut self, drawing: &Drawing) {
-        if drawing.floor.is_some() {
-            self.hallways(drawing.hallways());
-        }
-    }
-
-    /// Hallways, by their floor.
+    /// The floor of hallways.
     pub(in super::super) fn hallways(&mut self, hallways: impl Iterator<Item = Extent>) {
         self.line(&format!("<g fill=\"{FLOOR}\">"));
         for hallway in hallways {
