@@ -131,9 +131,7 @@ fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
 fn step_6_junction<const PLACE: usize>(bencher: Bencher) {
     let case = Case::new(1280, PLACE);
     let (frame, walls) = case.walls().unwrap();
-    bencher.bench_local(|| {
-        junction(&corners(&walls), &walls, &case.boundary, &frame)
-    });
+    bencher.bench_local(|| junction(&corners(&walls), &walls, &case.boundary, &frame));
 }
 
 /// The marker.

@@ -98,7 +98,8 @@ const NOTICED: [(BrokenLemma, &str); 11] = [
 #[test]
 fn each_flaw_is_noticed() {
     for (lemma, claim) in NOTICED {
-        let failure = ChoiceOdometer::exhaust(lemma, &mut |_| ControlFlow::Continue(())).expect_err(claim);
+        let failure =
+            ChoiceOdometer::exhaust(lemma, &mut |_| ControlFlow::Continue(())).expect_err(claim);
         assert_eq!(failure.claim, claim);
     }
 }
