@@ -9,8 +9,8 @@ pub struct Squares<T> {
     least: [f32; 2],
     per_metre: f32,
     columns: usize,
-    /// Row by row.
-    squares: Vec<Vec<u32>>,
+    /// Of the things in each square, row by row.
+    numbers: Vec<Vec<u32>>,
 }
 
 /// The least corner of all floors, and the size of their bounding box.
@@ -37,7 +37,7 @@ impl<T> Squares<T> {
         let (least, size) = extent(floors);
         let side = side(wished, size);
         let [columns, rows] = size.map(|length| (length / side) as usize + 1);
-        let mut squares = vec![Vec::new(); columns * rows];
+        let mut numbers = vec![Vec::new(); columns * rows];
         for (number, rectangle) in things.iter().map(around).enumerate() {
             let reach = |axis: usize, count: usize| {
                 // The margin is larger than any rounding error.
@@ -47,12 +47,12 @@ impl<T> Squares<T> {
             };
             for row in reach(1, rows) {
                 for column in reach(0, columns) {
-                    squares[row * columns + column].push(number as u32);
+                    numbers[row * columns + column].push(number as u32);
                 }
             }
         }
         let least = least.map(|at| at as f32);
-        Self { things, least, per_metre: (1.0 / side) as f32, columns, squares }
+        Self { things, least, per_metre: (1.0 / side) as f32, columns, numbers }
     }
 
     pub fn things(&self) -> &[T] {
@@ -66,7 +66,7 @@ impl<T> Squares<T> {
             ((place[axis] - self.least[axis]) * self.per_metre).max(0.0) as i32 as usize
         });
         let square = (column < self.columns).then(|| row * self.columns + column);
-        let numbers = square.and_then(|square| self.squares.get(square));
+        let numbers = square.and_then(|square| self.numbers.get(square));
         numbers.into_iter().flatten().map(|&number| &self.things[number as usize])
     }
 }

@@ -297,6 +297,7 @@ fn a_check_can_be_stopped() {
             true
         }
     }
+    #[expect(clippy::unnecessary_wraps, reason = "the type of a lemma")]
     fn many<C: Choose>(choose: &mut C) -> CaseResult {
         let _ = [255, 255, 2].map(|number| choose.below(number));
         Ok(())
