@@ -6,6 +6,7 @@
 use std::{
     fs::{self, File},
     iter,
+    ops::ControlFlow,
     path::Path,
     process::Command,
 };
