@@ -210,7 +210,9 @@ fn an_option_without_effect_is_an_error() {
 
 #[test]
 fn results_are_the_same_on_any_number_of_threads() {
-    let commands: [(&str, &[(&str, &str, u64)]); 3] = [
+    /// The rates of a report, each by what it is of and what it counts, with its number of cases.
+    type Cases = &'static [(&'static str, &'static str, u64)];
+    let commands: [(&str, Cases); 3] = [
         (
             "vision --size 640x480 --look tiles --views 24 --visits 2 --json",
             &[("marker", "seen where it is not", 24), ("visit", "not decided", 2)],
