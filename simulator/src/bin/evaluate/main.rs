@@ -11,16 +11,13 @@ mod runs;
 mod vision;
 
 use std::{
-    env,
     io::{self, Write},
     process::ExitCode,
 };
 
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 use toposlam_terminal::{
-    exit_codes::help_end,
-    report_output::ReportOutput,
-    terminal::{self, TerminalOptions},
+    exit_codes::help_end, report_output::ReportOutput, terminal::TerminalOptions,
 };
 
 /// Measure sensing, driving, whole runs and single mistakes against the ground truth
@@ -59,10 +56,7 @@ enum What {
 }
 
 fn main() -> ExitCode {
-    let mut command = EvaluateArguments::command().color(terminal::color_choice(env::args_os()));
-    let parsed = command.try_get_matches_from_mut(env::args_os());
-    let parsed = parsed.and_then(|matches| EvaluateArguments::from_arg_matches(&matches));
-    let arguments = parsed.unwrap_or_else(|error| error.format(&mut command).exit());
+    let arguments = EvaluateArguments::parse();
     arguments.terminal.apply();
     let mut out = ReportOutput::new(io::stdout().lock());
     let result = match arguments.what {
