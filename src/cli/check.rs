@@ -42,6 +42,7 @@ use super::{
     text::counted,
     use_threads,
     version::version,
+    write_drawing,
 };
 use estimate::EstimateOptions;
 use explorer::{ExplorerOptions, ExplorerSweep};
@@ -235,12 +236,8 @@ impl CheckArguments {
                 self.edges.iter().map(|edges| self.enumerated(edges)).collect::<Result<_, _>>()?
             }
         };
-        if let Some(worst) = &self.worst {
-            output::check_world_place(worst, work.values().all(Work::is_simple))?;
-        }
-        if let Some(failed) = &self.failed {
-            output::check_place(failed, &["toml", "json", "dot", "svg", "png"])?;
-        }
+        output::check_world_place(&self.worst, work.values().all(Work::is_simple))?;
+        output::check_place(&self.failed, &["toml", "json", "dot", "svg", "png"])?;
         match mapper {
             Mapper::Algorithm(algorithm, _) if self.estimate.estimate.is_some() => {
                 self.print_estimates(&work, algorithm, out)
@@ -511,13 +508,8 @@ impl Work {
 }
 
 fn write_failed(path: &Path, world: &NamedWorld) -> Result<(), CliError> {
-    let drawn = || picture::svg(&WorldPicture::from(world));
     match path.extension().and_then(|extension| extension.to_str()) {
-        Some("svg") => output::write_whole(path, drawn().as_bytes()),
-        Some("png") => {
-            let image = picture::png(&drawn()).map_err(|error| CliError::in_file(path, error))?;
-            output::write_whole(path, &image)
-        }
+        Some("svg" | "png") => write_drawing(path, &picture::svg(&WorldPicture::from(world))),
         _ => output::write_world(path, world),
     }
 }

@@ -54,12 +54,8 @@ impl CiCase {
 impl CiOptions {
     /// Checks that the reports can be written, before long work begins.
     pub(super) fn check_places(&self) -> Result<(), CliError> {
-        if let Some(path) = &self.junit {
-            output::check_place(path, &["xml"])?;
-        }
-        if let Some(path) = &self.sarif {
-            output::check_place(path, &["sarif", "json"])?;
-        }
+        output::check_place(&self.junit, &["xml"])?;
+        output::check_place(&self.sarif, &["sarif", "json"])?;
         Ok(())
     }
 

@@ -114,9 +114,7 @@ impl CompareArguments {
             world.start = Some(input::start_of(world, Some(start))?);
         }
         let worlds = [&worlds[0], &worlds[1]];
-        if let Some(path) = &self.html {
-            output::check_place(path, &["html", "htm"])?;
-        }
+        output::check_place(&self.html, &["html", "htm"])?;
         let robots = self.robots(worlds)?;
         let walk = match (&self.walk, &robots) {
             (None, _) => None,

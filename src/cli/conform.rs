@@ -124,8 +124,8 @@ pub(super) struct ConformArguments {
     #[command(flatten)]
     laser: LaserOptions,
     /// The source of the events [default: the first of these that the log has]
-    #[arg(long, value_enum, value_name = "WHAT")]
-    events: Option<EventSourceOption>,
+    #[arg(long, value_name = "WHAT", value_parser = evidence())]
+    events: Option<Evidence>,
     /// A file of known divergences to tolerate
     #[arg(long, value_name = "FILE")]
     quirks: Option<PathBuf>,
@@ -133,7 +133,7 @@ pub(super) struct ConformArguments {
     #[arg(long, value_name = "N")]
     max_darts: Option<usize>,
     /// Cases that the logs must cover together, such as confirmed,dead-end; if one is missing, exit with 3
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = cases(),
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = PossibleValuesParser::new(case_names()),
         hide_possible_values = true)]
     require_coverage: Vec<String>,
     /// Without --world: write the smallest world that was found: .toml, .json, .dot, or plantri's .ec or .pc
@@ -167,19 +167,20 @@ enum DriverOption {
     Anyone,
 }
 
-/// The source of the events.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum EventSourceOption {
-    /// Recorded percepts and doors
-    #[value(alias = "told")]
-    Recorded,
-    /// Scenes and odometry
-    Scenes,
-    /// Images and odometry
-    #[value(alias = "pictures")]
-    Images,
-    /// Laser scans and odometry
-    Laser,
+/// Parses the source of the events.
+fn evidence() -> impl TypedValueParser<Value = Evidence> {
+    let sources = [
+        PossibleValue::new("recorded").alias("told").help("Recorded percepts and doors"),
+        PossibleValue::new("scenes").help("Scenes and odometry"),
+        PossibleValue::new("images").alias("pictures").help("Images and odometry"),
+        PossibleValue::new("laser").help("Laser scans and odometry"),
+    ];
+    PossibleValuesParser::new(sources).map(|name| match name.as_str() {
+        "scenes" => Evidence::Scenes,
+        "images" | "pictures" => Evidence::Images,
+        "laser" => Evidence::Laser,
+        _ => Evidence::Recorded,
+    })
 }
 
 /// Parses the name of the marker of a robot whose log is checked.
@@ -187,11 +188,6 @@ fn robot_marker() -> impl TypedValueParser<Value = &'static dyn Marker> {
     let kinds: [&dyn Marker; 3] = [&Directional, &Undirected, &NoMarker];
     let kinds = kinds.map(|kind| PossibleValue::new(kind.name()).help(kind.about()));
     PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
-}
-
-/// Parses the name of a case.
-fn cases() -> impl TypedValueParser<Value = String> {
-    PossibleValuesParser::new(case_names())
 }
 
 /// A largest number of edges.
@@ -313,18 +309,10 @@ impl ConformArguments {
     }
 
     fn check_places(&self) -> Result<(), CliError> {
-        if let Some(path) = &self.html {
-            output::check_place(path, &["html", "htm"])?;
-        }
-        if let Some(path) = &self.map {
-            output::check_world_place(path, self.class.is_simple())?;
-        }
-        if let Some(path) = &self.minimise {
-            output::check_place(path, &["mcap"])?;
-        }
-        if let Some(path) = &self.picture {
-            output::check_place(path, &["svg", "png"])?;
-        }
+        output::check_place(&self.html, &["html", "htm"])?;
+        output::check_world_place(&self.map, self.class.is_simple())?;
+        output::check_place(&self.minimise, &["mcap"])?;
+        output::check_place(&self.picture, &["svg", "png"])?;
         let of_one =
             [("--map", &self.map), ("--minimise", &self.minimise), ("--picture", &self.picture)];
         for (option, path) in of_one {
@@ -397,17 +385,6 @@ impl DriverOption {
         match self {
             Self::Algorithm => DoorChooser::Algorithm(algorithm),
             Self::Anyone => DoorChooser::Anyone,
-        }
-    }
-}
-
-impl From<EventSourceOption> for Evidence {
-    fn from(source: EventSourceOption) -> Self {
-        match source {
-            EventSourceOption::Recorded => Self::Recorded,
-            EventSourceOption::Scenes => Self::Scenes,
-            EventSourceOption::Images => Self::Images,
-            EventSourceOption::Laser => Self::Laser,
         }
     }
 }

@@ -145,12 +145,10 @@ impl CounterexampleArguments {
         };
         let searches = MARKERS.into_iter().filter(wanted).map(search);
         let searches: Vec<(&dyn Marker, _)> = searches.collect::<Result<_, CliError>>()?;
-        if let Some(path) = &self.html {
-            output::check_place(path, &["html", "htm"])?;
-            if searches.len() != 1 {
-                let cause = "a page shows one marker; choose it with --marker";
-                return Err(CliError::at("--html", cause));
-            }
+        output::check_place(&self.html, &["html", "htm"])?;
+        if self.html.is_some() && searches.len() != 1 {
+            let cause = "a page shows one marker; choose it with --marker";
+            return Err(CliError::at("--html", cause));
         }
         let mut cluster = self.join_cluster(searches.iter().map(|(marker, _)| *marker), edges)?;
         let is_first = cluster.as_ref().is_none_or(|cluster| cluster.is_first());

@@ -8,15 +8,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use toposlam_model::{format::dot, marker::Marker};
+use toposlam_model::marker::Marker;
 
 use super::{
     CliError, Outcome, exit_codes::help_end, input, marker_kinds, output,
-    progress::watch_for_interrupt,
+    progress::watch_for_interrupt, write_drawing,
 };
 use view::ViewOptions;
 
-use crate::picture::{WorldPicture, png, svg};
+use crate::picture::{WorldPicture, svg};
 
 /// Draw a world, or what a robot's camera sees in a floor plan
 ///
@@ -52,12 +52,11 @@ impl DrawArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         watch_for_interrupt()?;
         if let (Some(pose), Some(out)) = (self.view.pose(), &self.out) {
+            output::check_place(out, &["png", "jpg", "jpeg"])?;
             self.view.write(&self.world, pose, out)?;
             return Ok(Outcome::Holds);
         }
-        if let Some(path) = &self.out {
-            output::check_place(path, &["svg", "png", "dot"])?;
-        }
+        output::check_place(&self.out, &["svg", "png", "dot"])?;
         let ending = self.out.as_deref().and_then(Path::extension).and_then(OsStr::to_str);
         if ending == Some("dot") && self.marker.is_some() {
             return Err(CliError::at("--marker", "a DOT file does not show the marker"));
@@ -67,15 +66,10 @@ impl DrawArguments {
         if let Some(text) = &self.start {
             world.start = Some(input::start_of(&world, Some(text))?);
         }
-        let drawn = || svg(&WorldPicture::from(&world));
-        let bytes = match ending {
-            Some("png") => png(&drawn()).map_err(|error| CliError::in_file(&self.world, error))?,
-            Some("dot") => dot::write(&world).into_bytes(),
-            _ => drawn().into_bytes(),
-        };
         match &self.out {
-            Some(path) => output::write_whole(path, &bytes)?,
-            None => out.write_all(&bytes)?,
+            Some(path) if ending == Some("dot") => output::write_world(path, &world)?,
+            Some(path) => write_drawing(path, &svg(&WorldPicture::from(&world)))?,
+            None => out.write_all(svg(&WorldPicture::from(&world)).as_bytes())?,
         }
         Ok(Outcome::Holds)
     }

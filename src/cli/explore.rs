@@ -148,12 +148,8 @@ impl ExploreArguments {
         let world = input::read_world(&self.world)?;
         check_worlds(self.marker, &self.world, std::slice::from_ref(&world.graph))?;
         let facing = input::start_of(&world, self.start.as_deref())?;
-        if let Some(map) = &self.map {
-            output::check_world_place(map, world.graph.is_simple())?;
-        }
-        if let Some(svg) = &self.svg {
-            output::check_place(svg, &["svg"])?;
-        }
+        output::check_world_place(&self.map, world.graph.is_simple())?;
+        output::check_place(&self.svg, &["svg"])?;
         let of_directional =
             [("--certificate", self.certificate), ("--audit", self.audit.audits().is_some())];
         for (option, is_given) in of_directional {

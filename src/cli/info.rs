@@ -80,11 +80,9 @@ type Carriers<'l> = Vec<(&'static str, Vec<&'l str>)>;
 
 impl InfoArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        if let Some(path) = &self.write_topics {
-            output::check_place(path, &["toml"])?;
-            if self.logs.len() > 1 {
-                return Err(CliError::at("--write-topics", "this needs exactly one log"));
-            }
+        output::check_place(&self.write_topics, &["toml"])?;
+        if self.write_topics.is_some() && self.logs.len() > 1 {
+            return Err(CliError::at("--write-topics", "this needs exactly one log"));
         }
         let topics = match &self.topics {
             None => None,

@@ -31,6 +31,7 @@ use std::{
     env,
     ffi::OsString,
     io::{self, Write},
+    path::Path,
     process::ExitCode,
 };
 
@@ -51,6 +52,8 @@ use toposlam_terminal::{
     terminal::{self, TerminalOptions},
     text, use_threads,
 };
+
+use crate::picture;
 
 /// Deterministic topological SLAM that can be trusted: an executable specification of the mapping
 /// algorithm, and a checker that runs it on every small world
@@ -112,6 +115,15 @@ fn run_choices(text: &str) -> Result<RunChoices, String> {
 fn marker_kinds() -> impl TypedValueParser<Value = &'static dyn Marker> {
     let kinds = MARKERS.map(|marker| PossibleValue::new(marker.name()).help(marker.about()));
     PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
+}
+
+/// Writes a drawing as PNG or SVG, by the ending of the file.
+fn write_drawing(path: &Path, svg: &str) -> Result<(), CliError> {
+    if path.extension().is_some_and(|ending| ending == "png") {
+        let bytes = picture::png(svg).map_err(|error| CliError::in_file(path, error))?;
+        return output::write_whole(path, &bytes);
+    }
+    output::write_whole(path, svg.as_bytes())
 }
 
 /// The error of `--ros` in a program without the feature `ros1`.

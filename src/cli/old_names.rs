@@ -63,7 +63,8 @@ pub(super) fn with_new_names(mut arguments: Vec<OsString>) -> Result<RenamedArgu
         remarks.push(format!("`{old}` is now `{}`", new.join(" ")));
         let name_of = |word: &str| word.split('=').next().unwrap_or_default().to_owned();
         let is_given = |word: &str| {
-            arguments.iter().any(|given| given.to_str().map(name_of) == Some(name_of(word)))
+            let is_same = |given: &OsString| given.to_str().map(name_of) == Some(name_of(word));
+            word.starts_with('-') && arguments.iter().any(is_same)
         };
         let words: Vec<_> = new.iter().filter(|word| !is_given(word)).map(OsString::from).collect();
         arguments.splice(at..=at, words);

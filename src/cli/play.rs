@@ -71,9 +71,7 @@ const MOST_VERTICES: usize = 100;
 
 impl PlayArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        if let Some(path) = &self.out {
-            output::check_place(path, &["html", "htm"])?;
-        }
+        output::check_place(&self.out, &["html", "htm"])?;
         let (world, facing) = match &self.world {
             Some(path) => self.read(path)?,
             None => (self.draw_world()?, Dart(0)),

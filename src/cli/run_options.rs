@@ -96,10 +96,8 @@ impl RunOptions {
 
     /// Checks the places of the log and the map, before long work begins.
     pub(super) fn check_places(&self, is_simple: bool) -> Result<(), CliError> {
-        if let Some(path) = &self.log {
-            output::check_place(path, &["mcap"])?;
-        }
-        self.map.as_ref().map_or(Ok(()), |path| output::check_world_place(path, is_simple))
+        output::check_place(&self.log, &["mcap"])?;
+        output::check_world_place(&self.map, is_simple)
     }
 
     /// Opens the log, if one is wanted. Its head has the world, the camera and the colours, if they are known.

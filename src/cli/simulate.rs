@@ -175,9 +175,8 @@ impl SimulateArguments {
                 return Err(needs_camera(&format!("--{option}")));
             }
         }
-        for (path, endings) in [(&self.svg, &["svg"][..]), (&self.html, &["html", "htm"])] {
-            path.as_ref().map_or(Ok(()), |path| output::check_place(path, endings))?;
-        }
+        output::check_place(&self.svg, &["svg"])?;
+        output::check_place(&self.html, &["html", "htm"])?;
         // The map of a floor plan is simple.
         self.options.check_places(true)?;
         let world = input::read_world(&self.plan)?;

@@ -241,21 +241,6 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_are_recognised() {
-        let folder = folder();
-        let [file, soft, hard] = ["file", "soft", "hard"].map(|name| folder.path().join(name));
-        fs::write(&file, "x").unwrap();
-        std::os::unix::fs::symlink("file", &soft).unwrap();
-        fs::hard_link(&file, &hard).unwrap();
-        for link in [soft, hard] {
-            let mut files = CallFiles::new();
-            files.read(&file).unwrap();
-            assert_eq!(files.write(&link, FileUse::Planned), Err(replaces_input(&link, &file)));
-        }
-    }
-
-    #[cfg(unix)]
-    #[test]
     fn a_device_may_be_several_inputs_and_outputs() {
         let device = Path::new("/dev/null");
         let mut files = CallFiles::new();

@@ -5,7 +5,7 @@ use std::{
     ffi::{OsStr, OsString},
     fs,
     io::{self, Read},
-    path::Path,
+    path::{Path, PathBuf},
     process,
     sync::{Mutex, PoisonError},
 };
@@ -89,9 +89,13 @@ pub fn make_folder(folder: &Path) -> Result<(), CliError> {
     })
 }
 
-/// Checks, before long work begins, that a file can be written to a path: it is no folder, no input and no other
-/// output, its folder exists, and its extension is in the list.
-pub fn check_place(path: &Path, extensions: &[&str]) -> Result<(), CliError> {
+/// Checks, before long work begins, that a file, if it is wanted, can be written to a path: it is no folder, no input
+/// and no other output, its folder exists, and its extension is in the list.
+pub fn check_place<'p>(
+    path: impl Into<Option<&'p PathBuf>>,
+    extensions: &[&str],
+) -> Result<(), CliError> {
+    let Some(path) = path.into() else { return Ok(()) };
     if path.is_dir() {
         return Err(CliError::in_file(path, "this is a folder, not a file"));
     }
@@ -120,7 +124,10 @@ pub fn check_place(path: &Path, extensions: &[&str]) -> Result<(), CliError> {
 const PLANAR_CODE: [&str; 3] = ["pc", "plc", "planar_code"];
 
 /// Does [`check_place`] for a world that may or may not be simple.
-pub fn check_world_place(path: &Path, simple: bool) -> Result<(), CliError> {
+pub fn check_world_place<'p>(
+    path: impl Into<Option<&'p PathBuf>>,
+    simple: bool,
+) -> Result<(), CliError> {
     let extensions = ["toml", "json", "dot", "ec", "edge_code"];
     if simple {
         check_place(path, &[&extensions[..], &PLANAR_CODE].concat())

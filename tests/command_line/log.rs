@@ -131,19 +131,6 @@ fn a_log_has_its_head_in_a_chunk_of_its_own_and_the_hash_of_its_start() {
     assert_eq!(metadata["world_hash"], world_hash(&world.graph, world.start.unwrap()));
 }
 
-/// A device that is always full.
-#[cfg(target_os = "linux")]
-#[test]
-fn a_full_disk_is_reported_and_ends_the_run() {
-    let scratch = Scratch::new("log_full");
-    let message = scratch.error(&format!("{SIMULATE} /dev/full --by-scene --json"));
-    assert!(message.starts_with("error: /dev/full: cannot be written: No space"), "{message}");
-    // A run that cannot begin leaves no log; the errors are snapshots.
-    scratch.error(&format!("{SIMULATE} run.mcap --start tee:sw"));
-    scratch.error(&format!("{SIMULATE} run.mcap --calibration missing.toml"));
-    assert_eq!(scratch.written(), [""; 0]);
-}
-
 #[cfg(unix)]
 #[test]
 fn the_log_of_an_interrupted_run_ends_with_the_interruption() {

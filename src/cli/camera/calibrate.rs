@@ -91,13 +91,9 @@ struct CalibrationReport {
 impl CalibrateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         watch_for_interrupt()?;
-        for (path, endings) in [
-            (&self.out, &["toml"][..]),
-            (&self.picture, &["png", "jpg", "jpeg"]),
-            (&self.mask_out, &["png"]),
-        ] {
-            path.as_ref().map_or(Ok(()), |path| output::check_place(path, endings))?;
-        }
+        output::check_place(&self.out, &["toml"])?;
+        output::check_place(&self.picture, &["png", "jpg", "jpeg"])?;
+        output::check_place(&self.mask_out, &["png"])?;
         let (known, mirror) = self.known()?;
         let images = self.read_images()?;
         let size = images[0].dimensions().into();

@@ -72,7 +72,7 @@ impl ConformArguments {
     /// What the events are derived from: as chosen, or else the best that the log has.
     fn evidence(&self, path: &Path, opened: &OpenLog) -> Result<Evidence, CliError> {
         match self.events {
-            Some(source) if Evidence::from(source).is_in(&opened.topics) => Ok(source.into()),
+            Some(source) if source.is_in(&opened.topics) => Ok(source),
             Some(_) => {
                 let cause = "the log does not have what this needs";
                 Err(CliError::at("--events", format!("{cause} ({})", path.display())))

@@ -1,6 +1,6 @@
 //! The picture of a run that was inferred from laser scans: what they hit, the robot's way, and its visits.
 
-use std::{ffi::OsStr, path::Path};
+use std::path::Path;
 
 use toposlam_conform::{
     AddedMarker, CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction,
@@ -9,8 +9,8 @@ use toposlam_logs::topic_map::Role;
 
 use super::{CliError, JudgedLog};
 use crate::{
-    cli::{output, text::counted},
-    picture::{DrawnVisit, LaserRunPicture, laser_run_svg, png},
+    cli::{text::counted, write_drawing},
+    picture::{DrawnVisit, LaserRunPicture, laser_run_svg},
 };
 
 /// Writes the picture of a run as SVG or PNG.
@@ -34,14 +34,7 @@ pub(super) fn write(path: &Path, log: &Path, judged: &JudgedLog) -> Result<(), C
         Some(AddedMarker::Assumed { position, heading, .. }) => Some((position, heading)),
         _ => None,
     };
-    let svg = laser_run_svg(&picture);
-    let is_png = path.extension().and_then(OsStr::to_str) == Some("png");
-    let bytes = if is_png {
-        png(&svg).map_err(|error| CliError::in_file(path, error))?
-    } else {
-        svg.into_bytes()
-    };
-    output::write_whole(path, &bytes)
+    write_drawing(path, &laser_run_svg(&picture))
 }
 
 /// What the scans hit, and the robot's way.

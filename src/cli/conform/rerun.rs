@@ -34,9 +34,7 @@ impl ConformArguments {
         let [log] = &self.logs[..] else {
             return Err(CliError::at("--rerun", "this needs exactly one log"));
         };
-        if let Some(map) = &self.map {
-            output::check_world_place(map, false)?;
-        }
+        output::check_world_place(&self.map, false)?;
         let opened = OpenLog::new(log, &self.sources)?;
         let begun = Instant::now();
         let head = LogHead(opened.run.as_ref());

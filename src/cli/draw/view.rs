@@ -70,10 +70,7 @@ impl ViewOptions {
 
     /// Writes the image.
     pub(super) fn write(&self, path: &Path, at: ViewPose, out: &Path) -> Result<(), CliError> {
-        output::check_place(out, &["png", "jpg", "jpeg"])?;
-        if let Some(path) = &self.labels {
-            output::check_place(path, &["png"])?;
-        }
+        output::check_place(&self.labels, &["png"])?;
         let world = input::read_world(path)?;
         let plan = input::floor_plan(path, &world)?;
         let effects = self.appearance.effects(self.seed)?;
