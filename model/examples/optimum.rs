@@ -15,10 +15,10 @@ use std::{
     error::Error,
 };
 
-use petgraph::{algo::dijkstra, graph::NodeIndex};
+use petgraph::algo::dijkstra;
 use toposlam_model::{
     check::{Check, RunChoices, Shard},
-    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     folding::FoldedTrail,
     mapping::MappingAlgorithm,
@@ -47,9 +47,8 @@ struct PossibleStart {
 
 impl PossibleStart {
     fn new(graph: EmbeddedGraph) -> Self {
-        let node = |vertex: Vertex| NodeIndex::new(vertex.at());
-        let moves = dijkstra(&graph.to_petgraph(), node(graph.vertex(FACING)), None, |_| 1);
-        let distance = graph.vertices().map(|vertex| moves[&node(vertex)]).collect();
+        let moves = dijkstra(&graph, graph.vertex(FACING), None, |_| 1);
+        let distance = graph.vertices().map(|vertex| moves[&vertex]).collect();
         let cycles = graph.edge_count() + 1 - graph.vertex_count();
         Self { graph, distance, cycles }
     }

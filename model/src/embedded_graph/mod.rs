@@ -13,7 +13,7 @@ mod relabel;
 mod smooth;
 
 pub use fault::{GraphError, ListError, clockwise_fault, opposite_fault, size_fault};
-pub use petgraph_traits::{PetgraphError, VisitedVertices};
+pub use petgraph_traits::{EdgeView, PetgraphError, VisitedVertices};
 
 use crate::clone_in_place::clone_in_place;
 

@@ -1,8 +1,11 @@
-//! Embedded graphs for the crate [`petgraph`]: its searches run on them, and all of its algorithms on their
-//! [conversions](EmbeddedGraph::to_petgraph).
+//! Embedded graphs as graphs of the crate [`petgraph`].
+//!
+//! A node is a [`Vertex`]. An edge is an edge: [`IntoEdges`] yields it once for each of its ends, a loop twice, in
+//! clockwise order, and [`IntoEdgeReferences`] yields it once. It is identified by the lower of its two darts. So
+//! petgraph's algorithms run on an embedded graph:
 //!
 //! ```
-//! use petgraph::{algo::dijkstra, graph::NodeIndex, visit::Bfs};
+//! use petgraph::algo::{connected_components, dijkstra};
 //! use toposlam_model::embedded_graph::{EmbeddedGraph, Vertex};
 //!
 //! // A triangle with a tail.
@@ -12,20 +15,58 @@
 //!     ("b", vec!["a", "c"]),
 //!     ("c", vec!["b", "a"]),
 //! ])?;
-//! let mut search = Bfs::new(&graph, Vertex(0));
-//! assert_eq!(search.next(&graph), Some(Vertex(0)));
-//! let moves = dijkstra(&graph.to_petgraph(), NodeIndex::new(0), None, |_| 1);
-//! assert_eq!(moves[&NodeIndex::new(3)], 2);
+//! assert_eq!(connected_components(&graph), 1);
+//! let moves = dijkstra(&graph, Vertex(0), None, |_| 1);
+//! assert_eq!(moves[&Vertex(3)], 2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! A [`Graph`](petgraph::Graph) keeps the clockwise order of the edges in the weights of its nodes:
+//! [`EmbeddedGraph::to_petgraph`].
 
 use petgraph::{
+    Undirected,
     graph::{EdgeIndex, NodeIndex, UnGraph},
-    visit::{GraphBase, IntoNeighbors, VisitMap, Visitable},
+    visit::{
+        Data, EdgeCount, EdgeRef, GraphBase, GraphProp, IntoEdgeReferences, IntoEdges,
+        IntoNeighbors, IntoNodeIdentifiers, IntoNodeReferences, NodeCompactIndexable, NodeCount,
+        NodeIndexable, VisitMap, Visitable,
+    },
 };
 use thiserror::Error;
 
 use super::{Dart, EmbeddedGraph, ListError, Vertex};
+
+/// An edge, seen from one of its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct EdgeView {
+    pub dart: Dart,
+    source: Vertex,
+    target: Vertex,
+    id: Dart,
+}
+
+impl EdgeRef for EdgeView {
+    type NodeId = Vertex;
+    type EdgeId = Dart;
+    type Weight = ();
+
+    fn source(&self) -> Vertex {
+        self.source
+    }
+
+    fn target(&self) -> Vertex {
+        self.target
+    }
+
+    fn weight(&self) -> &() {
+        &()
+    }
+
+    fn id(&self) -> Dart {
+        self.id
+    }
+}
 
 #[derive(Clone, Debug, Default)]
 pub struct VisitedVertices(Vec<bool>);
@@ -49,6 +90,43 @@ impl GraphBase for EmbeddedGraph {
     type EdgeId = Dart;
 }
 
+impl Data for EmbeddedGraph {
+    type NodeWeight = ();
+    type EdgeWeight = ();
+}
+
+impl GraphProp for EmbeddedGraph {
+    type EdgeType = Undirected;
+}
+
+impl NodeCount for EmbeddedGraph {
+    fn node_count(&self) -> usize {
+        self.vertex_count()
+    }
+}
+
+impl EdgeCount for EmbeddedGraph {
+    fn edge_count(&self) -> usize {
+        Self::edge_count(self)
+    }
+}
+
+impl NodeIndexable for EmbeddedGraph {
+    fn node_bound(&self) -> usize {
+        self.vertex_count()
+    }
+
+    fn to_index(&self, vertex: Vertex) -> usize {
+        vertex.at()
+    }
+
+    fn from_index(&self, index: usize) -> Vertex {
+        Vertex(index as u32)
+    }
+}
+
+impl NodeCompactIndexable for EmbeddedGraph {}
+
 impl Visitable for EmbeddedGraph {
     type Map = VisitedVertices;
 
@@ -62,11 +140,48 @@ impl Visitable for EmbeddedGraph {
     }
 }
 
+/// An iterator with a name, as the traits of petgraph need it.
+type Boxed<'g, T> = Box<dyn Iterator<Item = T> + 'g>;
+
+impl<'g> IntoNodeIdentifiers for &'g EmbeddedGraph {
+    type NodeIdentifiers = Boxed<'g, Vertex>;
+
+    fn node_identifiers(self) -> Self::NodeIdentifiers {
+        Box::new(self.vertices())
+    }
+}
+
+impl<'g> IntoNodeReferences for &'g EmbeddedGraph {
+    type NodeRef = (Vertex, &'g ());
+    type NodeReferences = Boxed<'g, (Vertex, &'g ())>;
+
+    fn node_references(self) -> Self::NodeReferences {
+        Box::new(self.vertices().map(|vertex| (vertex, &())))
+    }
+}
+
 impl<'g> IntoNeighbors for &'g EmbeddedGraph {
-    type Neighbors = Box<dyn Iterator<Item = Vertex> + 'g>;
+    type Neighbors = Boxed<'g, Vertex>;
 
     fn neighbors(self, vertex: Vertex) -> Self::Neighbors {
         Box::new(self.darts_of(vertex).map(|dart| self.vertex(self.opposite(dart))))
+    }
+}
+
+impl<'g> IntoEdgeReferences for &'g EmbeddedGraph {
+    type EdgeRef = EdgeView;
+    type EdgeReferences = Boxed<'g, EdgeView>;
+
+    fn edge_references(self) -> Self::EdgeReferences {
+        Box::new(EmbeddedGraph::edges(self).map(|(dart, _)| self.edge_view(dart)))
+    }
+}
+
+impl<'g> IntoEdges for &'g EmbeddedGraph {
+    type Edges = Boxed<'g, EdgeView>;
+
+    fn edges(self, vertex: Vertex) -> Self::Edges {
+        Box::new(self.darts_of(vertex).map(|dart| self.edge_view(dart)))
     }
 }
 
@@ -81,6 +196,12 @@ pub enum PetgraphError {
 }
 
 impl EmbeddedGraph {
+    fn edge_view(&self, dart: Dart) -> EdgeView {
+        let far = self.opposite(dart);
+        let (source, target) = (self.vertex(dart), self.vertex(far));
+        EdgeView { dart, source, target, id: dart.min(far) }
+    }
+
     /// The graph of petgraph: nodes have the numbers of the vertices, edges those of [`edges`](Self::edges), and the
     /// weight of a node lists its edges in clockwise order from the first dart of the vertex, a loop twice.
     pub fn to_petgraph(&self) -> UnGraph<Vec<EdgeIndex>, ()> {
@@ -128,7 +249,11 @@ impl EmbeddedGraph {
 
 #[cfg(test)]
 mod tests {
-    use petgraph::visit::{Bfs, Walker};
+    use petgraph::{
+        algo::{connected_components, min_spanning_tree},
+        data::Element,
+        visit::{Bfs, Walker},
+    };
     use proptest::prelude::*;
 
     use super::*;
@@ -136,8 +261,30 @@ mod tests {
 
     proptest! {
         #[test]
-        fn an_embedded_graph_is_connected(graph in any_graph(Class::Multigraph, 30)) {
+        fn an_edge_is_yielded_once_for_each_of_its_ends(
+            graph in any_graph(Class::Multigraph, 30),
+        ) {
+            prop_assert_eq!(graph.edge_references().count(), graph.edge_count());
+            let ends = graph.vertices().flat_map(|vertex| IntoEdges::edges(&graph, vertex));
+            let mut times = vec![0; graph.dart_count()];
+            for edge in ends {
+                times[edge.id().at()] += 1;
+                prop_assert_eq!(edge.source(), graph.vertex(edge.dart));
+                prop_assert_eq!(edge.target(), graph.vertex(graph.opposite(edge.dart)));
+            }
+            for (one, other) in graph.edges() {
+                prop_assert_eq!((times[one.at()], times[other.at()]), (2, 0));
+            }
+        }
+
+        #[test]
+        fn an_embedded_graph_is_connected_and_has_a_spanning_tree(
+            graph in any_graph(Class::Multigraph, 30),
+        ) {
+            prop_assert_eq!(connected_components(&graph), 1);
             prop_assert_eq!(Bfs::new(&graph, Vertex(0)).iter(&graph).count(), graph.vertex_count());
+            let tree = min_spanning_tree(&graph).filter(|part| matches!(part, Element::Edge { .. }));
+            prop_assert_eq!(tree.count(), graph.vertex_count() - 1);
         }
 
         #[test]
@@ -148,7 +295,7 @@ mod tests {
 
     #[test]
     fn a_wrong_order_of_edges_is_an_error() {
-        let edge = EmbeddedGraph::chain(1);
+        let edge = EmbeddedGraph::from_edge_lists(&[("u", vec!["a"]), ("v", vec!["a"])]).unwrap();
         for (orders, message) in [
             (
                 [vec![0], vec![0], vec![0]],
