@@ -92,11 +92,11 @@ fn ten_thousand_events(bencher: divan::Bencher) {
     let mut log = LogWriter::new(Vec::new()).unwrap();
     for event in trace.events() {
         let (time, moves) = (event.id as u64 * 1_000_000_000, event.id as u32 / 2);
-        let stamp = Stamp::of(time);
+        let stamp = Stamp::from_nanoseconds(time);
         match event.kind {
             TraceEventKind::Percept(Percept { degree, sighting }) => {
                 let (number, sighting) = (Some(moves), Some(sighting));
-                let arrival = Arrival { number, degree, sighting, form: None, entry: None };
+                let arrival = Arrival { number, degree, sighting, shape: None, entry: None };
                 let message = arrival_message(stamp, &arrival);
                 log.write(messages::Percept::TOPIC, time, &message).unwrap();
             }

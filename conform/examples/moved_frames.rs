@@ -124,7 +124,7 @@ fn derived<'a>(
 ) -> (Vec<Visit>, usize) {
     let mut visits = Visits::by_laser(*params);
     for (scan, odometry) in scans {
-        visits.see((), scan, &odometry);
+        visits.add_frame((), scan, &odometry);
     }
     let mut visits = visits.finish().visits;
     let all = visits.len();

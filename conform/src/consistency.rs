@@ -24,11 +24,11 @@ impl RunEvents {
             let mut fault = |cause| faults.push((place, cause));
             match &event.kind {
                 CheckedKind::Arrival { arrival, entry_off, .. } => {
-                    let Arrival { degree, number, form, .. } = *arrival;
+                    let Arrival { degree, number, shape, .. } = *arrival;
                     if let Some(recorded) = number.filter(|&number| number != moves) {
                         fault(DivergenceCause::Number { expected: moves, recorded });
                     }
-                    let doors = form.map_or(degree, JunctionShape::degree);
+                    let doors = shape.map_or(degree, JunctionShape::degree);
                     if doors != degree {
                         fault(DivergenceCause::Form { degree, doors });
                     }
@@ -45,11 +45,11 @@ impl RunEvents {
                     let next = self.events.get(place + 1).map(|event| &event.kind);
                     let reported = matches!(next, Some(CheckedKind::LeftBetweenDoors { .. }));
                     if let Some(off) = off.filter(|&off| off > OFF && !reported) {
-                        fault(DivergenceCause::Aside { off });
+                        fault(DivergenceCause::LeftBetweenDoors { off });
                     }
                 }
                 CheckedKind::LeftBetweenDoors { off } => {
-                    fault(DivergenceCause::Aside { off: *off });
+                    fault(DivergenceCause::LeftBetweenDoors { off: *off });
                 }
                 CheckedKind::TurnedBack if !self.may_turn_back => {
                     fault(DivergenceCause::TurnedBack);

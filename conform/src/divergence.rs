@@ -68,7 +68,7 @@ pub enum DivergenceCause {
     Form { degree: u32, doors: u32 },
     /// The robot drove off this angle, in radians, from the recorded door, or from any door.
     #[error("the robot drove off {:.0} degrees from the door", .off.to_degrees())]
-    Aside { off: f64 },
+    LeftBetweenDoors { off: f64 },
     /// In radians.
     #[error("by odometry the robot came from a direction {:.0} degrees off the entry door", .off.to_degrees())]
     Entry { off: f64 },
@@ -148,7 +148,7 @@ impl DivergenceCause {
             Self::NotInTurn(_) => ("not-in-turn", Log),
             Self::Number { .. } => ("number", Log),
             Self::Form { .. } => ("form", Log),
-            Self::Aside { .. } => ("aside", Motion),
+            Self::LeftBetweenDoors { .. } => ("aside", Motion),
             Self::Entry { .. } => ("entry", Perception),
             Self::TurnedBack => ("turned-back", Motion),
             Self::Measurement { measurement: ContradictoryMeasurement::Shape, .. } => {

@@ -101,7 +101,7 @@ pub enum SightingError {
 impl From<Percept> for CheckedKind {
     fn from(Percept { degree, sighting }: Percept) -> Self {
         let sighting = Some(sighting);
-        let arrival = Arrival { number: None, degree, sighting, form: None, entry: None };
+        let arrival = Arrival { number: None, degree, sighting, shape: None, entry: None };
         Self::Arrival { arrival, entry_off: None, hallway: None }
     }
 }
@@ -205,7 +205,7 @@ impl RunEvents {
                 return RecordedVisit::default();
             };
             RecordedVisit {
-                measured: ArrivalMeasurement { hallway: *hallway, shape: arrival.form },
+                measured: ArrivalMeasurement { hallway: *hallway, shape: arrival.shape },
                 is_blocked: arrival.is_at_obstacle(),
             }
         };

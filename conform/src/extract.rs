@@ -140,7 +140,7 @@ impl Evidence {
 
     /// The first source of events that a topic map has.
     #[must_use]
-    pub fn of(mapping: &TopicMap) -> Option<Self> {
+    pub fn from_topics(mapping: &TopicMap) -> Option<Self> {
         [Self::Recorded, Self::Scenes, Self::Images, Self::Laser]
             .into_iter()
             .find(|one| one.is_in(mapping))
@@ -251,7 +251,7 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
             _ => return,
         };
         for placed in placed {
-            meter.see(&placed.scan, &placed.odometry);
+            meter.add_scan(&placed.scan, &placed.odometry);
         }
     };
     let mut clock = MessageClock::default();
@@ -277,7 +277,7 @@ fn is_timed(entry: &Entry) -> bool {
 pub fn infer_events(seen: &[SensedScene], marked: bool) -> Vec<CheckedEvent> {
     let mut visits = Visits::by_camera(marked);
     for SensedScene { source, scene, odometry } in seen {
-        visits.see(*source, scene, odometry);
+        visits.add_frame(*source, scene, odometry);
     }
     visit_events(visits.finish()).0
 }
@@ -306,18 +306,21 @@ impl<W: Watch> Extraction<'_, W> {
         for entry in log.entries(bound) {
             let entry = entry?;
             if self.run.evidence == Evidence::Laser && is_timed(&entry) {
-                clock.next(entry.time, entry).into_iter().try_for_each(|entry| self.take(entry))?;
+                clock
+                    .next(entry.time, entry)
+                    .into_iter()
+                    .try_for_each(|entry| self.add_entry(entry))?;
             } else {
-                self.take(entry)?;
+                self.add_entry(entry)?;
             }
         }
         let (rest, off_clock) = clock.finish();
-        rest.into_iter().try_for_each(|entry| self.take(entry))?;
+        rest.into_iter().try_for_each(|entry| self.add_entry(entry))?;
         self.look()?;
         let scans_without_odometry = self.placing.without_odometry();
         self.run.skipped = SkippedMessages { off_clock, scans_without_odometry };
         match std::mem::take(&mut self.placing).finish() {
-            Some(waiting) => waiting.for_each(|placed| self.see(&placed)),
+            Some(waiting) => waiting.for_each(|placed| self.add_scan(&placed)),
             None if self.run.scans > 0 => {
                 return Err(ExtractError::NoOdometry { scans: self.run.scans });
             }
@@ -326,7 +329,7 @@ impl<W: Watch> Extraction<'_, W> {
         Ok(())
     }
 
-    fn take(&mut self, entry: Entry) -> Result<(), ExtractError> {
+    fn add_entry(&mut self, entry: Entry) -> Result<(), ExtractError> {
         let Entry { time, offset, id, stamp, content, .. } = entry;
         let stamp = stamp.nanoseconds();
         let source = EventSource { time, id, offset };
@@ -360,7 +363,7 @@ impl<W: Watch> Extraction<'_, W> {
         match kind {
             EventKind::Odometry(odometry) => {
                 for placed in self.placing.odometry(stamp, odometry) {
-                    self.see(&placed);
+                    self.add_scan(&placed);
                 }
                 if matches!(self.run.evidence, Evidence::Scenes | Evidence::Images) {
                     self.scenes.add_odometry(id, stamp, odometry);
@@ -374,7 +377,7 @@ impl<W: Watch> Extraction<'_, W> {
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
                 let placed = self.placing.scan(stamp, PlacedScan { source, scan, odometry });
                 if let Some(placed) = &placed {
-                    self.see(placed);
+                    self.add_scan(placed);
                 }
             }
             EventKind::Frame(frame) => {
@@ -391,9 +394,9 @@ impl<W: Watch> Extraction<'_, W> {
     }
 
     /// Senses a laser scan.
-    fn see(&mut self, placed: &PlacedScan) {
+    fn add_scan(&mut self, placed: &PlacedScan) {
         let PlacedScan { source, scan, odometry } = placed;
-        self.laser.see(*source, scan, odometry);
+        self.laser.add_frame(*source, scan, odometry);
         self.watch.part_done(1);
     }
 

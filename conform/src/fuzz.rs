@@ -128,7 +128,7 @@ fn read_run(log: &Log, mapping: &TopicMap) {
 /// Judges the run in a log without images, whatever chose its doors: it diverges at one of its events or at
 /// its end, or not; or there is an error.
 fn judge_run(log: &Log, mapping: &TopicMap) {
-    let Some(evidence) = Evidence::of(mapping) else { return };
+    let Some(evidence) = Evidence::from_topics(mapping) else { return };
     let config = ExtractConfig { marked: true, ..ExtractConfig::new(evidence) };
     let ExtractedRun { events, .. } = match extract(log, mapping, &config, &()) {
         Ok(run) => run,

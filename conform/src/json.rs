@@ -196,7 +196,7 @@ impl Serialize for DivergenceCause {
         };
         // The angle by which the robot missed a door, in radians.
         let off = match *self {
-            Self::Aside { off } | Self::Entry { off } => Some(off),
+            Self::LeftBetweenDoors { off } | Self::Entry { off } => Some(off),
             _ => None,
         };
         // The numbers of the events between which a measurement contradicts earlier ones, and of those between which

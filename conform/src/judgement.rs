@@ -163,7 +163,7 @@ impl Judgement {
             found.note(place, cause);
         }
         let mut junctions = BTreeMap::new();
-        for shape in events.events.iter().filter_map(|event| event.arrival()?.form) {
+        for shape in events.events.iter().filter_map(|event| event.arrival()?.shape) {
             *junctions.entry(shape).or_default() += 1;
         }
         let mut judgement = Self {

@@ -197,7 +197,7 @@ mod tests {
             let (event, doors) = (events.len(), doors.clone());
             junctions.push(VisitedJunction { event, centre, clearance: 1.2, extent: 1.2, doors });
             let entry = Some(PI);
-            let arrival = Arrival { number: None, degree: 3, sighting: None, form: None, entry };
+            let arrival = Arrival { number: None, degree: 3, sighting: None, shape: None, entry };
             let arrived = CheckedKind::Arrival { arrival, entry_off: None, hallway: None };
             for (seconds, kind) in [(0, arrived), (1, Door(1).into())] {
                 let time = (10 * number + seconds) * 1_000_000_000;

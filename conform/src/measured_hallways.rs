@@ -86,7 +86,7 @@ impl RunEvents {
             self.events.get_mut(*at)
         {
             match measurement {
-                ContradictoryMeasurement::Shape => arrival.form = None,
+                ContradictoryMeasurement::Shape => arrival.shape = None,
                 _ => *hallway = None,
             }
         }
@@ -104,7 +104,7 @@ fn unplaced_visits(events: &RunEvents, trace: &Trace) -> Vec<MeasuredVisit> {
         let is_lost = |number: usize| trace.is_relocation(number);
         MeasuredVisit {
             darts: Vec::new(),
-            shape: arrival.form,
+            shape: arrival.shape,
             arrived: hallway.filter(|_| !is_lost(number)),
             left_by: trace.doors().get(number).copied().filter(|_| !is_lost(number + 1)),
         }

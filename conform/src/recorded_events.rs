@@ -86,9 +86,9 @@ impl RecordedEvents {
     fn left(&mut self, source: EventSource, number: Option<u32>, door: Door) {
         let direction = match self.events.last().map(|event| &event.kind) {
             Some(CheckedKind::Arrival {
-                arrival: Arrival { form: Some(form), entry: Some(entry), .. },
+                arrival: Arrival { shape: Some(shape), entry: Some(entry), .. },
                 ..
-            }) => direction(*form, *entry, door),
+            }) => direction(*shape, *entry, door),
             _ => None,
         };
         let now = self.way.back().copied();
@@ -117,11 +117,11 @@ mod tests {
 
     use super::*;
 
-    fn arrival(number: u32, form: [bool; 4], entry: f64) -> EventKind {
-        let form = JunctionShape(form);
-        let (degree, sighting) = (form.degree(), Some(Sighting::Nothing));
-        let (number, form, entry) = (Some(number), Some(form), Some(entry));
-        EventKind::Arrival(Arrival { number, degree, sighting, form, entry })
+    fn arrival(number: u32, shape: [bool; 4], entry: f64) -> EventKind {
+        let shape = JunctionShape(shape);
+        let (degree, sighting) = (shape.degree(), Some(Sighting::Nothing));
+        let (number, shape, entry) = (Some(number), Some(shape), Some(entry));
+        EventKind::Arrival(Arrival { number, degree, sighting, shape, entry })
     }
 
     /// A robot that comes to a T by its stem, leaves by a door as the log says, and drives somewhere.

@@ -196,7 +196,7 @@ fn with_more_doors(events: &RunEvents, at: &[usize], more: u32) -> RunEvents {
     let mut events = events.clone();
     for &at in at {
         let arrival = arrival_at(&mut events, at);
-        (arrival.degree, arrival.form) = (arrival.degree + more, None);
+        (arrival.degree, arrival.shape) = (arrival.degree + more, None);
     }
     events
 }
@@ -335,10 +335,10 @@ impl Log {
             (Entry, EventKind::Arrival(Arrival { entry: Some(entry), .. })) => {
                 *entry += f64::from(1 + by % 3) * std::f64::consts::FRAC_PI_2;
             }
-            (Form, EventKind::Arrival(Arrival { form: Some(JunctionShape(form)), .. })) => {
-                let before = *form;
-                *form = [before[0], before[3], before[2], before[1]];
-                if *form == before {
+            (Form, EventKind::Arrival(Arrival { shape: Some(JunctionShape(shape)), .. })) => {
+                let before = *shape;
+                *shape = [before[0], before[3], before[2], before[1]];
+                if *shape == before {
                     return Shows::NotOne;
                 }
                 let next = places.get(event + 1).map(|&next| &self.lines[next].1);

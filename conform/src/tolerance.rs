@@ -96,7 +96,7 @@ impl<'q> Tolerance<'q> {
             if let (Some(Percept { degree, sighting }), Some(arrival)) = (expected(cause), found) {
                 (arrival.degree, arrival.sighting) = (degree, Some(sighting));
                 // Its shape belongs to the tolerated percept.
-                arrival.form = None;
+                arrival.shape = None;
             }
             self.amended.forget_measurement(cause);
         }

@@ -28,7 +28,7 @@ pub fn visit_events(log: VisitLog<EventSource>) -> (Vec<CheckedEvent>, Vec<Visit
         }
         let (percept, entry) = (visit.percept(), visit.entry());
         let degree = percept.degree;
-        let arrival = Arrival { number: None, degree, sighting, form: shape, entry };
+        let arrival = Arrival { number: None, degree, sighting, shape, entry };
         push(at, CheckedKind::Arrival { arrival, entry_off: None, hallway });
         let Some((VisitExit { at, off, .. }, door)) = visit.exit.zip(percept.door) else {
             continue;

@@ -100,8 +100,8 @@ pub fn times(count: usize) -> String {
 pub fn event(kind: &CheckedKind) -> String {
     match kind {
         CheckedKind::Arrival { arrival, .. } => {
-            let Arrival { degree, sighting, form, .. } = *arrival;
-            let name = form.and_then(JunctionShape::name);
+            let Arrival { degree, sighting, shape, .. } = *arrival;
+            let name = shape.and_then(JunctionShape::name);
             let shape = name.map_or(String::new(), |name| format!(" ({name})"));
             // A judged percept has its sighting.
             let sighting = sighting.unwrap_or(Sighting::Nothing);

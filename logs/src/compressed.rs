@@ -24,7 +24,7 @@ pub enum FileCompression {
 }
 
 impl FileCompression {
-    pub(super) fn of(head: &[u8]) -> Option<Self> {
+    pub(super) fn detect(head: &[u8]) -> Option<Self> {
         match head {
             head if head.starts_with(GZIP) => Some(Self::Gzip),
             head if head.starts_with(ZSTANDARD) => Some(Self::Zstandard),

@@ -127,7 +127,7 @@ pub(super) fn command_of(command: &Command) -> EventKind {
 }
 
 pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
-    let Arrival { number: moves, degree, sighting, form, entry } = arrival;
+    let Arrival { number: moves, degree, sighting, shape, entry } = arrival;
     // A marker that points along no door is written along any.
     let marker = match sighting {
         Some(Sighting::Pointing(door)) => number(door.0),
@@ -139,7 +139,7 @@ pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
         r#move: moves.unwrap_or(UNKNOWN),
         degree: *degree,
         marker,
-        form: form.map_or([false; 4], |form| form.0),
+        form: shape.map_or([false; 4], |shape| shape.0),
         entry: entry.unwrap_or(f64::NAN),
     }
 }
@@ -150,7 +150,7 @@ pub(super) fn arrival_of(message: &Percept) -> Result<Arrival, String> {
         number: known(message.r#move),
         degree: message.degree,
         sighting: Some(sighting_of(message.marker.into())?),
-        form: message.form.contains(&true).then_some(JunctionShape(message.form)),
+        shape: message.form.contains(&true).then_some(JunctionShape(message.form)),
         entry: message.entry.is_finite().then_some(message.entry),
     })
 }

@@ -101,7 +101,7 @@ impl Entries<'_> {
         if topic.encoding == Encoding::Event {
             let (stamp, contents) = self.event(file, message).map_err(wrong)?;
             for content in contents {
-                self.add(message, stamp.unwrap_or(Stamp::of(time)), content);
+                self.add(message, stamp.unwrap_or(Stamp::from_nanoseconds(time)), content);
             }
             return Ok(());
         }
@@ -118,7 +118,7 @@ impl Entries<'_> {
             match (carried.role, &*carried.type_name) {
                 (Role::Scan, "sensor_msgs/LaserScan") => {
                     let frame_id: String = value.get("header.frame_id").unwrap_or_default();
-                    let mount = self.mounts.of(&frame_id)?;
+                    let mount = self.mounts.get(&frame_id)?;
                     let scan = mount.and_then(|mount| sensor_data::scan_of(&value, &mount));
                     let scan = Some(Arc::new(scan.map_err(wrong)?));
                     self.add(message, stamp, EventKind::Frame(Frame { scan, ..frame }).into());
@@ -171,7 +171,8 @@ impl Entries<'_> {
             None => None,
         };
         let sighting = event.sighting()?;
-        let arrival = |degree| Arrival { number: moves, degree, sighting, form: None, entry: None };
+        let arrival =
+            |degree| Arrival { number: moves, degree, sighting, shape: None, entry: None };
         let mut contents = Vec::new();
         if self.bound.carries(Role::Percept) {
             contents
@@ -183,7 +184,8 @@ impl Entries<'_> {
             let number = moves.map(|moves| moves.saturating_add(1));
             contents.push(EventKind::Door { number, door: Door(door) }.into());
         }
-        let stamp = event.stamp.map(|seconds| Stamp::of((seconds * 1e9).round() as u64));
+        let stamp =
+            event.stamp.map(|seconds| Stamp::from_nanoseconds((seconds * 1e9).round() as u64));
         Ok((stamp, contents))
     }
 
@@ -204,7 +206,7 @@ impl From<EventKind> for Content {
 
 fn stamp(value: &Value<'_>, time: u64) -> Stamp {
     let found = ["stamp", "header.stamp"].into_iter().find_map(|path| value.get(path));
-    found.unwrap_or(Stamp::of(time))
+    found.unwrap_or(Stamp::from_nanoseconds(time))
 }
 
 fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content, String> {
@@ -237,7 +239,7 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
                 number: whole(carried, value, MessagePart::Move)?,
                 degree: whole(carried, value, MessagePart::Degree)?.unwrap_or_default(),
                 sighting: marker,
-                form: None,
+                shape: None,
                 entry: None,
             })
         }

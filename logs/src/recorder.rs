@@ -79,7 +79,7 @@ impl<W: Write> Recorder<W> {
     }
 
     fn frame(&mut self, frame: &Frame) {
-        let taken = Stamp::of(nanoseconds(frame.taken));
+        let taken = Stamp::from_nanoseconds(nanoseconds(frame.taken));
         if let Some(file) = frame.image.as_ref().and_then(|image| image.file()) {
             self.write(IMAGE, &CompressedImage::new(taken, file));
             if let Some(annotated) = self.annotated(frame) {
@@ -106,7 +106,7 @@ impl<W: Write> Recorder<W> {
 impl<W: Write> RunObserver for Recorder<W> {
     fn event(&mut self, event: &Event) {
         self.now = self.now.max(event.time);
-        let stamp = Stamp::of(self.now);
+        let stamp = Stamp::from_nanoseconds(self.now);
         match &event.kind {
             EventKind::Frame(frame) => self.frame(frame),
             EventKind::Command { state, command } => {
@@ -134,7 +134,7 @@ impl<W: Write> RunObserver for Recorder<W> {
                 self.twist = twist;
             }
             EventKind::Odometry(odometry) => {
-                let stamp = Stamp::of(event.time);
+                let stamp = Stamp::from_nanoseconds(event.time);
                 let odometry = OdometryMessage::new(stamp, odometry, self.twist);
                 self.write(ODOM, &odometry);
                 self.write(TF, &TFMessage { transforms: &[odometry.transform()] });

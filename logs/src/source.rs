@@ -23,7 +23,7 @@ impl Source {
         storage.seek(SeekFrom::Start(0))?;
         let mut head = Vec::new();
         (&mut storage).take(4).read_to_end(&mut head)?;
-        let compression = FileCompression::of(&head);
+        let compression = FileCompression::detect(&head);
         let Some(known) = compression else {
             let storage = Mutex::new(storage);
             return Ok(Self { storage, length: size, size, compression, is_cut: false });

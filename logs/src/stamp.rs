@@ -11,7 +11,7 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    pub fn of(nanoseconds: u64) -> Self {
+    pub fn from_nanoseconds(nanoseconds: u64) -> Self {
         const SECOND: u64 = 1_000_000_000;
         let sec = i32::try_from(nanoseconds / SECOND).unwrap_or(i32::MAX);
         Self { sec, nanosec: (nanoseconds % SECOND) as u32 }

@@ -119,7 +119,7 @@ impl<'l> Mounts<'l> {
     }
 
     /// The mount of the scanner of a frame. In a log without transforms it is that of the robot's centre.
-    pub(super) fn of(&mut self, frame: &str) -> Result<Result<Mount, String>, LogError> {
+    pub(super) fn get(&mut self, frame: &str) -> Result<Result<Mount, String>, LogError> {
         let frame = frame_name(frame);
         Ok(self.pose_of(&frame)?.and_then(|pose| mount(&pose, &frame)))
     }

@@ -87,7 +87,7 @@ fn the_usual_topics_need_no_topic_map_file() {
         number: Some(3),
         degree: 2,
         sighting: Some(Sighting::Nothing),
-        form: Some(JunctionShape([true, false, true, false])),
+        shape: Some(JunctionShape([true, false, true, false])),
         entry: Some(0.5),
     };
     assert_eq!(percept.content, Content::Event(EventKind::Arrival(arrival)));
@@ -107,7 +107,7 @@ fn topics_of_others_are_read_through_paths_and_units() {
         number: None,
         degree: 4,
         sighting: Some(Sighting::Pointing(Door(2))),
-        form: None,
+        shape: None,
         entry: None,
     };
     assert_eq!(percept.content, Content::Event(EventKind::Arrival(arrival)));

@@ -14,7 +14,7 @@ fn the_published_moves_in_random_buildings_are_those_of_right_maps() {
         (50, 30, [640, 2_330, 3_767, 16_928]),
     ] {
         let Totals { edges, certificate, folding, algorithm1, .. } =
-            Totals::of(junctions, more_hallways);
+            Totals::with_size(junctions, more_hallways);
         let found = [edges as u64, certificate as u64, folding, algorithm1];
         assert_eq!(found, expected, "{junctions} junctions");
     }

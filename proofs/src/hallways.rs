@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use toposlam_model::{
     driving::{
-        algorithm2::{Command, Lost, PathExecution, Standing, Step},
+        algorithm2::{Command, JunctionState, Lost, PathExecution, Step},
         odometry::Odometry,
         scene::{
             CentreLine, HallwayStatus, HallwayView, JunctionView, Place, Reason, Scene, Unclear,
@@ -24,7 +24,7 @@ use crate::choose::{Choose, Exhibit};
 
 /// The six forms: a dead end, an L to the left and to the right, a T by its stem, and by an arm with
 /// the stem to the left and to the right.
-pub const FORMS: [JunctionShape; 6] = [
+pub const JUNCTION_SHAPES: [JunctionShape; 6] = [
     JunctionShape([true, false, false, false]),
     JunctionShape([true, true, false, false]),
     JunctionShape([true, false, false, true]),
@@ -50,7 +50,7 @@ const HARDLY: f64 = 1.6;
 pub trait PathDriver {
     /// Begins a path where the last one ended, and gives up after the given number of metres without a
     /// junction.
-    fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self;
+    fn begin(queue: &'static [Door], from: &JunctionState, leg: f64) -> Self;
 
     /// One round: a scene in, a command out.
     ///
@@ -63,7 +63,7 @@ pub trait PathDriver {
 }
 
 impl PathDriver for PathExecution<'static> {
-    fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self {
+    fn begin(queue: &'static [Door], from: &JunctionState, leg: f64) -> Self {
         Self::new(queue, from).with_leg_bound(leg)
     }
 
@@ -80,7 +80,7 @@ impl PathDriver for PathExecution<'static> {
 #[derive(Clone, Copy, Debug)]
 pub struct PathJunction {
     /// Its shape from the door by which the path comes in.
-    pub form: JunctionShape,
+    pub shape: JunctionShape,
     at: [f64; 2],
     entry: f64,
 }
@@ -88,7 +88,7 @@ pub struct PathJunction {
 impl PathJunction {
     /// The directions of its doors, clockwise from the entry door.
     fn doors(&self) -> impl Iterator<Item = f64> + '_ {
-        let quarters = (0..4).filter(|&quarter| self.form.0[quarter]);
+        let quarters = (0..4).filter(|&quarter| self.shape.0[quarter]);
         quarters.map(|quarter| wrapped(self.entry - quarter as f64 * FRAC_PI_2))
     }
 
@@ -112,7 +112,7 @@ impl PathJunction {
     }
 
     /// Its shape from the door in this direction.
-    fn form_from(&self, entry: f64) -> JunctionShape {
+    fn shape_from(&self, entry: f64) -> JunctionShape {
         let is_door = |quarter| {
             let direction = entry - f64::from(quarter) * FRAC_PI_2;
             self.doors().any(|door| wrapped(door - direction).abs() < NEAR)
@@ -121,9 +121,9 @@ impl PathJunction {
     }
 
     /// The knowledge of a robot that stands there.
-    pub fn standing(&self) -> Standing {
-        let percept = Percept { degree: self.form.degree(), sighting: Sighting::Nothing };
-        Standing { form: self.form, percept, entry: self.entry }
+    pub fn junction_state(&self) -> JunctionState {
+        let percept = Percept { degree: self.shape.degree(), sighting: Sighting::Nothing };
+        JunctionState { shape: self.shape, percept, entry: self.entry }
     }
 }
 
@@ -178,15 +178,15 @@ impl HallwayDrive {
         sight: f64,
         budget: Budget,
     ) -> Self {
-        let mut junctions = vec![PathJunction { form: first, at: [0.0; 2], entry: PI }];
-        for &(door, length, form) in legs {
+        let mut junctions = vec![PathJunction { shape: first, at: [0.0; 2], entry: PI }];
+        for &(door, length, shape) in legs {
             let last = junctions[junctions.len() - 1];
             let direction = last.direction(door);
             let there = Odometry { position: last.at, heading: direction }.moved(0.0, length);
             let entry = wrapped(direction + PI);
             let known = junctions.iter().find(|junction| junction.distance(&there) < NEAR);
-            let form = known.map_or(form, |junction| junction.form_from(entry));
-            junctions.push(PathJunction { form, at: there.position, entry });
+            let shape = known.map_or(shape, |junction| junction.shape_from(entry));
+            junctions.push(PathJunction { shape, at: there.position, entry });
         }
         Self { junctions, robot: Odometry::default(), sight, budget }
     }
@@ -235,7 +235,7 @@ impl HallwayDrive {
         junction: PathJunction,
         distance: f64,
     ) -> (Place, ImageEvidence) {
-        let mistakes = if self.budget.mistakes == 0 { 0 } else { FORMS.len() as u8 - 1 };
+        let mistakes = if self.budget.mistakes == 0 { 0 } else { JUNCTION_SHAPES.len() as u8 - 1 };
         let hallway = u8::from(distance > SURELY || mistakes > 0);
         match self.surprise(choose, 1 + hallway + mistakes) {
             0 => (Place::Junction(junction.seen(&self.robot)), ImageEvidence::Truth),
@@ -246,10 +246,11 @@ impl HallwayDrive {
             }
             other => {
                 self.budget.mistakes -= 1;
-                let mut others = FORMS.into_iter().filter(|&form| form != junction.form);
-                let form = others.nth(usize::from(other) - 3).unwrap_or(FORMS[0]);
-                let mistaken = PathJunction { form, ..junction };
-                (Place::Junction(mistaken.seen(&self.robot)), ImageEvidence::Mistake(form))
+                let mut others =
+                    JUNCTION_SHAPES.into_iter().filter(|&shape| shape != junction.shape);
+                let shape = others.nth(usize::from(other) - 3).unwrap_or(JUNCTION_SHAPES[0]);
+                let mistaken = PathJunction { shape, ..junction };
+                (Place::Junction(mistaken.seen(&self.robot)), ImageEvidence::Mistake(shape))
             }
         }
     }
@@ -260,7 +261,7 @@ impl HallwayDrive {
         junction: PathJunction,
         distance: f64,
     ) -> (Place, ImageEvidence) {
-        let mistakes = if self.budget.mistakes == 0 { 0 } else { 2 * FORMS.len() as u8 };
+        let mistakes = if self.budget.mistakes == 0 { 0 } else { 2 * JUNCTION_SHAPES.len() as u8 };
         let near = u8::from(distance <= HARDLY);
         match self.surprise(choose, 2 + near + mistakes) {
             0 => (Place::Hallway(self.hallway(HallwayStatus::Clear)), ImageEvidence::Nothing),
@@ -273,14 +274,14 @@ impl HallwayDrive {
             other => {
                 self.budget.mistakes -= 1;
                 let other = usize::from(other - 3 - near);
-                let form = FORMS[other % FORMS.len()];
+                let shape = JUNCTION_SHAPES[other % JUNCTION_SHAPES.len()];
                 // At the robot, or a little ahead.
-                let ahead = if other < FORMS.len() { 0.6 } else { 0.0 };
+                let ahead = if other < JUNCTION_SHAPES.len() { 0.6 } else { 0.0 };
                 let onwards = self.onwards();
                 let there = Odometry { heading: onwards, ..self.robot }.moved(0.0, ahead);
                 let entry = wrapped(onwards + PI);
-                let mistaken = PathJunction { form, at: there.position, entry };
-                (Place::Junction(mistaken.seen(&self.robot)), ImageEvidence::Mistake(form))
+                let mistaken = PathJunction { shape, at: there.position, entry };
+                (Place::Junction(mistaken.seen(&self.robot)), ImageEvidence::Mistake(shape))
             }
         }
     }

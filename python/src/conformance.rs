@@ -105,7 +105,7 @@ fn checked(
     check: &mut LogCheck,
     watcher: &Watcher,
 ) -> Result<(LogReport, bool), NotChecked> {
-    check.evidence = Evidence::of(&log.mapping).ok_or_else(|| {
+    check.evidence = Evidence::from_topics(&log.mapping).ok_or_else(|| {
         let ambiguous = TopicMap::from_log(&log.log).err();
         let cause = ambiguous.map_or(ExtractError::NothingMapped, ExtractError::TopicMap);
         NotChecked::Check(cause.into())

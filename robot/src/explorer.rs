@@ -12,7 +12,7 @@ use toposlam_logs::record::{
 };
 use toposlam_model::{
     driving::{
-        algorithm2::{Command, Lost, LostReason, PathExecution, PathState, Standing, Step},
+        algorithm2::{Command, JunctionState, Lost, LostReason, PathExecution, PathState, Step},
         scene::Scene,
     },
     mapping::{ArrivalMeasurement, MapWalk, MappedWorld, MappingError, MappingEvent},
@@ -33,7 +33,7 @@ use obstacle::{DEAD_END, Stall, turning_point};
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Standpoint {
     /// At the turning point of a junction.
-    Junction(Standing),
+    Junction(JunctionState),
     /// In a hallway, before an obstacle. The way back is in this direction, in the frame of odometry.
     Obstacle { back: f64 },
 }
@@ -116,8 +116,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 
     /// The same robot, if it is already known where it stands.
     #[must_use]
-    pub fn standing_at(mut self, standing: Standing) -> Self {
-        self.place = Some(Standpoint::Junction(standing));
+    pub fn at_junction(mut self, state: JunctionState) -> Self {
+        self.place = Some(Standpoint::Junction(state));
         self
     }
 
@@ -193,7 +193,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         }
         self.emit(EventKind::Hypothesis { moves: journey.moves(), event });
         if event.grows_map() {
-            self.emit(EventKind::Map(MapRecord::of(journey)));
+            self.emit(EventKind::Map(MapRecord::from_walk(journey)));
         }
     }
 
@@ -201,12 +201,12 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     fn emit(&mut self, kind: EventKind) {
         let samples = self.robot.track().get(self.samples..).unwrap_or_default().to_vec();
         self.samples += samples.len();
-        for Sample { speed, turning, reckoned } in samples {
+        for Sample { speed, turning, reading } in samples {
             // The wheels were commanded when they were last read.
             let motion = EventKind::Motion { forward: speed, turn: turning };
             self.emit_at(self.sampled, motion);
-            self.emit_at(reckoned.time, EventKind::Odometry(reckoned.odometry));
-            self.sampled = reckoned.time;
+            self.emit_at(reading.time, EventKind::Odometry(reading.odometry));
+            self.sampled = reading.time;
         }
         self.emit_at(self.robot.odometry().time, kind);
     }
@@ -218,7 +218,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     /// Drives a path to its end.
-    fn drive(&mut self, mut path: PathExecution) -> Result<Standing, ExplorerError> {
+    fn drive(&mut self, mut path: PathExecution) -> Result<JunctionState, ExplorerError> {
         let mut junction = None;
         loop {
             let (moves, door) = (self.last_move, self.door);
@@ -243,7 +243,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             };
             self.emit(EventKind::Command { state: path.state(), command });
             match step.map_err(|lost| ExplorerError::Lost { moves, door, lost })? {
-                Step::Arrived(standing) => return Ok(standing),
+                Step::Arrived(state) => return Ok(state),
                 Step::Go(command) => self.carry_out(command)?,
             }
         }
@@ -331,20 +331,20 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     /// Where the robot stands. At the very start, it finds out.
-    fn standing(&mut self) -> Result<Standing, ExplorerError> {
-        if let Some(Standpoint::Junction(standing)) = self.place {
-            return Ok(standing);
+    fn junction_state(&mut self) -> Result<JunctionState, ExplorerError> {
+        if let Some(Standpoint::Junction(state)) = self.place {
+            return Ok(state);
         }
         let odometry = self.robot.odometry().odometry;
-        let standing = match self.drive(PathExecution::at_start(&odometry)) {
+        let state = match self.drive(PathExecution::at_start(&odometry)) {
             Err(ExplorerError::Lost { .. }) if self.begins_anywhere => return self.find_junction(),
-            standing => standing?,
+            state => state?,
         };
-        if !self.begins_anywhere && !standing.form.is_l() {
-            return Err(ExplorerError::NotAnL { degree: standing.form.degree() });
+        if !self.begins_anywhere && !state.shape.is_l() {
+            return Err(ExplorerError::NotAnL { degree: state.shape.degree() });
         }
-        self.stand(standing, Arrival::new(self.last_move, &standing));
-        Ok(standing)
+        self.arrive(state, Arrival::new(self.last_move, &state));
+        Ok(state)
     }
 
     fn allow_for(&mut self, percept: Percept) {
@@ -352,13 +352,13 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.allowance.perceive(percept, spent);
     }
 
-    fn stand(&mut self, standing: Standing, arrival: Arrival) {
-        self.place = Some(Standpoint::Junction(standing));
+    fn arrive(&mut self, state: JunctionState, arrival: Arrival) {
+        self.place = Some(Standpoint::Junction(state));
         self.stall = None;
         let hallway = self.hallway.take().and_then(|hallway| hallway.measured(arrival.entry));
-        self.measured = ArrivalMeasurement { hallway, shape: arrival.form };
+        self.measured = ArrivalMeasurement { hallway, shape: arrival.shape };
         self.hallway = Some(MeasuredHallway::from(Some(self.robot.odometry().odometry)));
-        self.allow_for(standing.percept);
+        self.allow_for(state.percept);
         self.emit(EventKind::Arrival(arrival));
     }
 }
@@ -369,7 +369,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
     fn percept(&mut self) -> Result<Percept, ExplorerError> {
         match self.place {
             Some(Standpoint::Obstacle { .. }) => Ok(DEAD_END),
-            _ => Ok(self.standing()?.percept),
+            _ => Ok(self.junction_state()?.percept),
         }
     }
 
@@ -377,7 +377,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
     fn traverse(&mut self, door: Door) -> Result<(), ExplorerError> {
         let from = match self.place {
             Some(at) => at,
-            None => Standpoint::Junction(self.standing()?),
+            None => Standpoint::Junction(self.junction_state()?),
         };
         if let Some(limit) = self.allowance.forbids(door, self.spent()) {
             return Err(ExplorerError::Budget {
@@ -389,7 +389,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
         self.allowance.leave(door, self.spent());
         match (&mut self.hallway, &from) {
             (Some(hallway), Standpoint::Junction(from)) => {
-                hallway.leave(direction(from.form, from.entry, door));
+                hallway.leave(direction(from.shape, from.entry, door));
             }
             // A way that an obstacle ended is not measured.
             (hallway, _) => *hallway = None,
@@ -405,9 +405,9 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
             Standpoint::Obstacle { back } => self.go_in_direction(*back),
         };
         match driven {
-            Ok(standing) => {
+            Ok(state) => {
                 self.moves += 1;
-                self.stand(standing, Arrival::new(self.last_move, &standing));
+                self.arrive(state, Arrival::new(self.last_move, &state));
             }
             Err(error) if self.returns_at_obstacles && error.is_stalled() => {
                 self.stand_at_obstacle();

@@ -59,8 +59,8 @@ impl MeasuredHallway {
 }
 
 /// The direction of a door of a junction, in the frame of odometry.
-pub fn direction(form: JunctionShape, entry: f64, door: Door) -> Option<f64> {
-    let mut doors = (0..4).filter(|&quarter| form.0[quarter]);
+pub fn direction(shape: JunctionShape, entry: f64, door: Door) -> Option<f64> {
+    let mut doors = (0..4).filter(|&quarter| shape.0[quarter]);
     let quarter = doors.nth(door.0 as usize)?;
     Some(wrapped(entry - quarter as f64 * FRAC_PI_2))
 }

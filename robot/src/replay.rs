@@ -138,7 +138,7 @@ pub fn replay(
         return Err(failure.into());
     }
     let mut comparison = rest.recorded.compare(&results.0);
-    let map = MapRecord::of(&mapping);
+    let map = MapRecord::from_walk(&mapping);
     // A map that may not grow any more is not compared with the recorded one.
     let ended = !matches!(error, Some(MappingError::Bound { .. }));
     let recorded = rest.recorded.map.filter(|_| ended);

@@ -40,7 +40,7 @@ pub struct Sample {
     pub speed: f64,
     /// Radians a second, counter-clockwise.
     pub turning: f64,
-    pub reckoned: TimedOdometry,
+    pub reading: TimedOdometry,
 }
 
 /// Where the robot is by its wheels, and when, in seconds since it was switched on.

@@ -45,7 +45,7 @@ fn visits(bencher: Bencher) {
     bencher.counter(ItemsCount::new(scans.len())).bench(|| {
         let mut visits = Visits::by_laser(LaserParams::default());
         for (scan, odometry) in &scans {
-            visits.see((), scan, odometry);
+            visits.add_frame((), scan, odometry);
         }
         visits.finish()
     });

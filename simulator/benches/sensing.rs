@@ -71,7 +71,7 @@ impl Case {
 
     fn walls(&self) -> Option<(WallFrame, Vec<WallSegment>)> {
         let lines = lines(&clusters(&self.boundary));
-        let frame = WallFrame::of(&lines)?;
+        let frame = WallFrame::fit(&lines)?;
         let walls = frame.walls(&lines);
         Some((frame, walls))
     }

@@ -320,7 +320,7 @@ mod tests {
     fn scenes_are_wrong_as_often_as_measured() {
         let (plan, facing, pose) = at_start();
         let junction = JunctionTruth::from_plan(&plan, plan.graph().vertex(facing), pose);
-        let right = SceneClass::Junction(junction.form.unwrap());
+        let right = SceneClass::Junction(junction.shape.unwrap());
         let count = |noise: f64| {
             let camera = SceneCamera { plan: plan.clone(), marker: facing, noise, seed: 4 };
             let scene = |number| camera.scene(pose, number, FrameLight::default());

@@ -5,7 +5,7 @@ use std::fmt;
 
 use toposlam_logs::record::{Event, EventKind, RunObserver};
 use toposlam_model::{
-    driving::{algorithm2::Standing, odometry::Odometry, pose::Pose, scene::wrapped},
+    driving::{algorithm2::JunctionState, odometry::Odometry, pose::Pose, scene::wrapped},
     embedded_graph::{Dart, Vertex},
     floor_plan::FloorPlan,
     percept::{Door, Percept},
@@ -123,12 +123,13 @@ impl<'p> GroundTruthMonitor<'p> {
 
     /// What a robot at a pose knows if it is at the expected junction; `None` at a junction of a kind that
     /// robots do not know.
-    pub fn standing(&self, pose: Pose) -> Option<Standing> {
+    pub fn junction_state(&self, pose: Pose) -> Option<JunctionState> {
         let dart = self.world.pose();
         let entry = wrapped(angle(self.plan.direction(dart)) - pose.heading);
         let from = Pose { heading: angle(self.plan.direction(dart).reversed()), ..pose };
-        let form = JunctionTruth::from_plan(self.plan, self.plan.graph().vertex(dart), from).form?;
-        Some(Standing { form, percept: self.world.sensed(), entry })
+        let shape =
+            JunctionTruth::from_plan(self.plan, self.plan.graph().vertex(dart), from).shape?;
+        Some(JunctionState { shape, percept: self.world.sensed(), entry })
     }
 
     /// Every arrival so far, the start first.

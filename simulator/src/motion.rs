@@ -122,7 +122,7 @@ impl SimulatedBase {
     fn sample(&mut self) {
         if let Some(track) = &mut self.track {
             let (speed, turning) = (self.wheels.speed(), self.wheels.turn_rate());
-            track.push(Sample { speed, turning, reckoned: self.reading });
+            track.push(Sample { speed, turning, reading: self.reading });
         }
     }
 
@@ -263,7 +263,7 @@ mod tests {
         Drive(&mut driven).forward(9.0).unwrap();
         assert!((driven.pose().position[0] - COMMAND).abs() < 0.005);
         let mut base = base(&MotionNoise::NONE, 1);
-        base.drive(WheelSpeeds::of(0.2, 0.0)).unwrap();
+        base.drive(WheelSpeeds::from_motion(0.2, 0.0)).unwrap();
         base.wait(10.0);
         // One period of the command, and one more until the watchdog stops it.
         assert!((base.pose().position[0] - 0.2 * WATCHDOG).abs() < 1e-9, "{:?}", base.pose());
@@ -280,7 +280,7 @@ mod tests {
         assert!((CLEARANCE..CLEARANCE + 0.02).contains(&free), "{free} m");
         let mut base = base(&MotionNoise::NONE, 1);
         for _ in 0..400 {
-            base.drive(WheelSpeeds::of(0.2, 0.0)).unwrap();
+            base.drive(WheelSpeeds::from_motion(0.2, 0.0)).unwrap();
         }
         assert!(base.pose().position[0] <= 7.0 - RADIUS);
         assert!(base.reading().odometry.position[0] > 19.0);
@@ -308,9 +308,9 @@ mod tests {
         assert_eq!(speeds.len(), 5);
         assert!(speeds[1] > 0.19 && speeds[2] > 0.15, "{speeds:?}");
         assert_eq!((speeds[0], speeds[3], speeds[4]), (0.0, 0.0, 0.0));
-        let times: Vec<_> = base.track().iter().map(|s| s.reckoned.time - begun).collect();
+        let times: Vec<_> = base.track().iter().map(|s| s.reading.time - begun).collect();
         assert!((times[4] - (3.0 * PERIOD + 0.3)).abs() < 1e-9 && times[0] == 0.0, "{times:?}");
-        assert_eq!(base.track()[4].reckoned.odometry, base.reading().odometry);
+        assert_eq!(base.track()[4].reading.odometry, base.reading().odometry);
     }
 
     #[test]

@@ -49,7 +49,7 @@ pub struct JunctionTruth {
     pub vertex: Vertex,
     pub kind: JunctionKind,
     /// What it looks like from the door behind the robot; `None` where there is none.
-    pub form: Option<JunctionShape>,
+    pub shape: Option<JunctionShape>,
     /// The directions of the doors, clockwise from the one behind the robot if there is one.
     pub doors: Vec<f64>,
     pub turning_point: [f64; 2],
@@ -94,7 +94,7 @@ impl Truth {
                 Some([hallway.heading.abs(), (hallway.left - hallway.right).abs() / 2.0])
             }
             Self::Junction(junction) => {
-                let entry = junction.doors.first().filter(|_| junction.form.is_some())?;
+                let entry = junction.doors.first().filter(|_| junction.shape.is_some())?;
                 let aside = unit(*entry).perp(&Vector2::from(junction.turning_point)).abs();
                 Some([PI - entry.abs(), aside])
             }
@@ -161,7 +161,7 @@ impl JunctionTruth {
         Self {
             vertex,
             kind: junction.kind,
-            form: behind.map(|_| plan.shape(darts[0])),
+            shape: behind.map(|_| plan.shape(darts[0])),
             doors: darts.iter().map(relative_angle).collect(),
             turning_point: plan_from_robot
                 .inverse_transform_point(&junction.position.into())
@@ -173,7 +173,7 @@ impl JunctionTruth {
     /// no door behind the robot.
     pub fn distance(&self) -> Option<f64> {
         let inwards = unit(self.doors.first()? + PI);
-        self.form.map(|_| inwards.dot(&Vector2::from(self.turning_point)))
+        self.shape.map(|_| inwards.dot(&Vector2::from(self.turning_point)))
     }
 }
 
@@ -187,7 +187,7 @@ pub fn true_marker(plan: &FloorPlan, dart: Dart, pose: Pose) -> MarkerView {
     MarkerView {
         position: junction.turning_point,
         axis: undirected(points),
-        door: junction.form.and(door).map(|door| Door(door as u32)),
+        door: junction.shape.and(door).map(|door| Door(door as u32)),
     }
 }
 
@@ -292,7 +292,7 @@ mod tests {
             let found: Vec<_> = junction.doors.iter().map(|door| wrapped(door + 1e-12)).collect();
             let expected: Vec<_> = doors.iter().map(|door| wrapped(door + 1e-12)).collect();
             close(&found, &expected);
-            assert_eq!(SceneClass::Junction(junction.form.unwrap()).to_string(), name);
+            assert_eq!(SceneClass::Junction(junction.shape.unwrap()).to_string(), name);
             close(&[junction.distance().unwrap()], &[0.4]);
             close(&junction.turning_point, &[0.4, 0.0]);
         }
@@ -312,7 +312,7 @@ mod tests {
     #[test]
     fn a_robot_that_has_turned_has_no_door_behind_it() {
         let junction = junction_at(0.3, 8.0, 0.0);
-        assert_eq!((junction.form, junction.distance()), (None, None));
+        assert_eq!((junction.shape, junction.distance()), (None, None));
         assert_eq!(junction.kind, JunctionKind::L);
     }
 

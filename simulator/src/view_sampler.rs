@@ -380,13 +380,13 @@ mod tests {
     #[test]
     fn every_kind_of_place_is_viewed_often() {
         let views = views();
-        let mut forms = BTreeMap::new();
+        let mut shapes = BTreeMap::new();
         let (mut hallways, mut between, mut random, mut marked) = (0, 0, 0, 0);
         for view in (0..1000).map(|number| views.view(number).unwrap()) {
             match view.truth().unwrap() {
                 Truth::Hallway(_) => hallways += 1,
                 Truth::Between(..) => between += 1,
-                Truth::Junction(junction) => *forms.entry(junction.form).or_insert(0) += 1,
+                Truth::Junction(junction) => *shapes.entry(junction.shape).or_insert(0) += 1,
             }
             random += usize::from(view.plan_name.starts_with("random-"));
             marked += usize::from(view.marker.is_some());
@@ -394,8 +394,8 @@ mod tests {
         assert!(hallways > 100 && between > 200, "{hallways} {between}");
         assert!((400..600).contains(&random), "{random}");
         assert!((300..700).contains(&marked), "{marked}");
-        for (form, name) in JUNCTION_SHAPES {
-            assert!(forms[&Some(form)] > 20, "{name}: {}", forms[&Some(form)]);
+        for (shape, name) in JUNCTION_SHAPES {
+            assert!(shapes[&Some(shape)] > 20, "{name}: {}", shapes[&Some(shape)]);
         }
     }
 

@@ -61,7 +61,7 @@ fn events_of(scans: &[PlacedScan], params: &LaserParams) -> RunEvents {
     let mut inferred = Visits::by_laser(*params);
     for (number, (scan, odometry)) in scans.iter().enumerate() {
         let source = EventSource { time: number as u64 * 1_000_000_000, ..EventSource::default() };
-        inferred.see(source, scan, odometry);
+        inferred.add_frame(source, scan, odometry);
     }
     RunEvents { events: visit_events(inferred.finish()).0, ..RunEvents::default() }
 }
@@ -381,7 +381,7 @@ fn drifted(scans: &[PlacedScan], drift: f64) -> Vec<PlacedScan> {
 fn measured_drift(scans: &[PlacedScan]) -> f64 {
     let mut meter = DriftMeter::new(LaserParams::default());
     for (scan, odometry) in scans {
-        meter.see(scan, odometry);
+        meter.add_scan(scan, odometry);
     }
     meter.finish().unwrap().to_degrees()
 }

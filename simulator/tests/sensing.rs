@@ -58,7 +58,7 @@ fn sensing_is_never_wrong_and_seldom_unknown() {
     let decided = visits.iter().filter(|visit| visit.decided.is_some());
     assert!(decided.clone().count() >= 15, "{}", decided.count());
     for visit in decided {
-        assert_eq!(visit.decided, Some((visit.form, visit.percept)), "{visit:#?}");
+        assert_eq!(visit.decided, Some((visit.shape, visit.percept)), "{visit:#?}");
     }
     for errors in vision_report::figures(&judged, &visits, Calibration::Right).errors {
         // These views are too few to show some targets.

@@ -83,7 +83,7 @@ impl OpenLog {
     /// # Errors
     /// Returns an error if there is none, for example because several topics could carry the same data.
     pub(super) fn evidence(&self, path: &Path) -> Result<Evidence, CliError> {
-        if let Some(evidence) = Evidence::of(&self.topics) {
+        if let Some(evidence) = Evidence::from_topics(&self.topics) {
             return Ok(evidence);
         }
         if self.has_one_percept() {
@@ -162,7 +162,7 @@ impl OpenLog {
     pub(super) fn image(&self, last_message: EventId) -> Option<Vec<u8>> {
         let annotated = self.log.topics().iter().position(|topic| topic.name == ANNOTATED);
         let topics = match annotated {
-            Some(_) => TopicMap::of(Role::Image, ANNOTATED),
+            Some(_) => TopicMap::with_topic(Role::Image, ANNOTATED),
             None => self.topics.only(&[Role::Image]),
         };
         let bound = topics.bind(&self.log).ok()?;

@@ -107,7 +107,7 @@ impl RunOptions {
         settings: &RunSettings,
         world: Option<(&NamedWorld, Dart)>,
         seed: u64,
-        eyes: Option<&(Camera, ColourModel)>,
+        sensors: Option<&(Camera, ColourModel)>,
     ) -> Result<Option<Recorder<File>>, CliError> {
         let Some(path) = &self.log else { return Ok(None) };
         let known = world.map(|(world, facing)| {
@@ -123,12 +123,14 @@ impl RunOptions {
             start,
             marker: "directional".to_owned(),
             seed,
-            calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
-            colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
+            calibration: sensors
+                .map(|(camera, _)| calibration::to_toml(camera))
+                .unwrap_or_default(),
+            colours: sensors.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
             command,
             algorithm: settings.recorded().to_string(),
         };
-        let camera = eyes.map(|(camera, _)| camera.clone());
+        let camera = sensors.map(|(camera, _)| camera.clone());
         let recorder = Recorder::new(output::create_growing(path)?, &run, camera);
         recorder.map(Some).map_err(|error| self.unwritten(&error))
     }

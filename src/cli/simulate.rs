@@ -147,7 +147,7 @@ struct Simulation {
     /// `None` if the frames are scenes.
     sensor: Option<RobotSensor>,
     /// With a camera that takes images.
-    eyes: Option<(Camera, ColourModel)>,
+    sensors: Option<(Camera, ColourModel)>,
     frame_kind: &'static str,
 }
 
@@ -190,7 +190,7 @@ impl SimulateArguments {
             faults: self.fault.clone(),
             ..SimulationConfig::at_start(plan.clone(), facing, self.seed)
         };
-        let (robot, sensor, eyes, frame_kind) = match (&scanner, self.by_scene) {
+        let (robot, sensor, sensors, frame_kind) = match (&scanner, self.by_scene) {
             (Some(scanner), _) if self.sensor == SensorChoice::Laser => {
                 let sensor = RobotSensor::Laser(Box::default());
                 (config.by_laser(scanner), Some(sensor), None, "scans")
@@ -200,11 +200,11 @@ impl SimulateArguments {
                 let look = self.appearance.look;
                 let effects = self.appearance.effects(self.seed)?;
                 let camera = camera_with(&effects, &self.camera()?)?;
-                let eyes = self.eyes(&camera)?;
-                feasible::check_marker(&plan, facing, &eyes, look)?;
-                let robot = config.with_images(eyes.rig(), look, &effects);
-                let sensor = RobotSensor::Camera(Box::new(eyes.sensor(look)));
-                (robot, Some(sensor), Some((camera, eyes.colours(look).clone())), "images")
+                let sensors = self.sensors(&camera)?;
+                feasible::check_marker(&plan, facing, &sensors, look)?;
+                let robot = config.with_images(sensors.rig(), look, &effects);
+                let sensor = RobotSensor::Camera(Box::new(sensors.sensor(look)));
+                (robot, Some(sensor), Some((camera, sensors.colours(look).clone())), "images")
             }
         };
         let robot = match &scanner {
@@ -213,7 +213,7 @@ impl SimulateArguments {
             }
             _ => robot,
         };
-        Ok(Simulation { world, plan, facing, settings, robot, sensor, eyes, frame_kind })
+        Ok(Simulation { world, plan, facing, settings, robot, sensor, sensors, frame_kind })
     }
 
     /// Where the run starts. If the plan's own start is not an L, at the L that is nearest to it.
@@ -237,15 +237,15 @@ impl SimulateArguments {
         })
     }
 
-    fn eyes(&self, camera: &Camera) -> Result<LearnedSensors, CliError> {
+    fn sensors(&self, camera: &Camera) -> Result<LearnedSensors, CliError> {
         let look = self.appearance.look;
         if let Some(path) = &self.colours {
             return Ok(LearnedSensors::with_colours(camera, look, input::read_colours(path)?));
         }
         let progress = Progress::new("learning colours", "looks")?;
-        let eyes = LearnedSensors::new(camera, &[look], &progress);
+        let sensors = LearnedSensors::new(camera, &[look], &progress);
         progress.finish();
-        eyes.map_err(|error| match error {
+        sensors.map_err(|error| match error {
             LearningError::Interrupted(stopped) => stopped.into(),
             error => CliError::at("--look", error),
         })
@@ -258,15 +258,15 @@ impl SimulateArguments {
         begun: Instant,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
-        let Simulation { world, plan, facing, settings, robot, sensor, eyes, frame_kind } =
+        let Simulation { world, plan, facing, settings, robot, sensor, sensors, frame_kind } =
             simulation;
         let command = self.given.command(&["toposlam", "simulate", &self.plan.to_string_lossy()]);
         let in_world = Some((&world, facing));
         let mut log =
-            self.options.recorder(command, &settings, in_world, self.seed, eyes.as_ref())?;
+            self.options.recorder(command, &settings, in_world, self.seed, sensors.as_ref())?;
         let story_out: Option<&mut dyn Write> =
             if self.options.json { None } else { Some(&mut *out) };
-        let camera = eyes.filter(|_| self.html.is_some()).map(|(camera, _)| camera);
+        let camera = sensors.filter(|_| self.html.is_some()).map(|(camera, _)| camera);
         let head = story::head(&world, facing);
         let mut capture = RunCapture::new(head, story_out, frame_kind, camera)?;
         let mut recording = Recording::default();

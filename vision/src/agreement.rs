@@ -288,17 +288,17 @@ mod tests {
 
     #[test]
     fn the_walls_of_a_junction_support_its_own_outline_and_no_other() {
-        let forms: Vec<[bool; 4]> = (1..15_u32)
-            .map(|form| std::array::from_fn(|door| form & 1 << door != 0))
+        let shapes: Vec<[bool; 4]> = (1..15_u32)
+            .map(|shape| std::array::from_fn(|door| shape & 1 << door != 0))
             .filter(|doors: &[bool; 4]| *doors != [true, false, true, false])
             .filter(|doors| *doors != [false, true, false, true])
             .collect();
-        for &doors in &forms {
+        for &doors in &shapes {
             let boundary = seen(&DrawnPlace::junction(doors, HALF));
             let own = held(doors, &boundary);
             assert!(own.trust() > 0.99 && own.cover() > 0.9, "{doors:?}: {own:?}");
             assert_eq!((own.against, own.blank), (0, 0), "{doors:?}");
-            for other in forms.iter().filter(|&&other| other != doors) {
+            for other in shapes.iter().filter(|&&other| other != doors) {
                 let agreement = held(*other, &boundary);
                 assert!(!agreement.holds(0.85), "{other:?} at {doors:?}: {agreement:?}");
                 assert!(agreement.balance() < own.balance() - 100.0, "{other:?} at {doors:?}");

@@ -27,7 +27,7 @@ pub(crate) fn bearings() -> Bearings {
 /// The walls within a boundary.
 pub(crate) fn walls(boundary: &Boundary) -> Option<(WallFrame, Vec<WallSegment>)> {
     let lines = lines(&clusters(boundary));
-    let frame = WallFrame::of(&lines)?;
+    let frame = WallFrame::fit(&lines)?;
     Some((frame, frame.walls(&lines)))
 }
 

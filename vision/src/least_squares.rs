@@ -48,7 +48,7 @@ pub(crate) struct PrincipalAxis {
 
 impl PrincipalAxis {
     /// The first principal component of points; not a number if there are none.
-    pub(crate) fn of(points: &[Point2<f64>]) -> Self {
+    pub(crate) fn fit(points: &[Point2<f64>]) -> Self {
         let count = points.len() as f64;
         let mean = points.iter().map(|point| point.coords).sum::<Vector2<f64>>() / count;
         let scatter = |point: &Point2<f64>| {
@@ -92,7 +92,7 @@ mod tests {
         let shapes = [[2.0, 0.5, 1.0], [1.0, -0.3, 4.0], [3.0, 0.0, 1.0], [0.0, 0.0, 2.0]];
         for [x, y, z] in shapes {
             let points = [[x, y], [-x, z], [y, -z], [z, x], [0.3, 0.1]].map(Point2::from);
-            let PrincipalAxis { mean, along, major, minor } = PrincipalAxis::of(&points);
+            let PrincipalAxis { mean, along, major, minor } = PrincipalAxis::fit(&points);
             let off = points.map(|point| point - mean);
             let covariance: Matrix2<f64> = off.iter().map(|off| off * off.transpose() / 5.0).sum();
             assert!((covariance * along - major * along).norm() < 1e-12);

@@ -33,7 +33,7 @@ impl WallLine {
     // paper: sense.pca
     pub fn through(points: &[Point2<f64>]) -> Option<Self> {
         let (first, last) = (*points.first()?, *points.last()?);
-        let PrincipalAxis { mean: middle, along, major, minor } = PrincipalAxis::of(points);
+        let PrincipalAxis { mean: middle, along, major, minor } = PrincipalAxis::fit(points);
         if major <= 0.0 {
             return None;
         }

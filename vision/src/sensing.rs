@@ -164,7 +164,7 @@ fn interpreted(view: &GroundView, bearings: &Bearings) -> (Scene, SensingTrace) 
 pub(crate) fn place_within(mut boundary: Boundary, margin: f64) -> (Place, SensingTrace) {
     let clusters = clusters(&boundary);
     let lines = lines(&clusters);
-    let frame = WallFrame::of(&lines);
+    let frame = WallFrame::fit(&lines);
     let walls = frame.map_or_else(Vec::new, |frame| frame.walls(&lines));
     if let Some(frame) = &frame {
         boundary.confirm(&walls, frame);

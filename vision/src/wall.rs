@@ -50,7 +50,7 @@ impl WallFrame {
 
     /// The frame along which the most lines run, by length; `None` without lines.
     // paper: env.right-angles
-    pub fn of(lines: &[WallLine]) -> Option<Self> {
+    pub fn fit(lines: &[WallLine]) -> Option<Self> {
         let angles: Vec<_> =
             lines.iter().map(|line| (Self::along(line.direction()).angle, line.length())).collect();
         let near = |angle: f64| {
@@ -192,7 +192,7 @@ mod tests {
                 turned_line([[1.5, 0.8], [1.5, -0.8]]),
                 turned_line([[0.3, 0.4], [0.6, 0.7]]),
             ];
-            let found = WallFrame::of(&lines).unwrap();
+            let found = WallFrame::fit(&lines).unwrap();
             assert!((found.angle() - turned).abs() < 1e-9, "{found:?}");
             let walls = found.walls(&lines);
             assert_eq!(walls.len(), 2, "the slanted line is not a wall");
@@ -216,6 +216,6 @@ mod tests {
     #[test]
     fn the_x_axis_of_a_frame_is_the_one_nearest_to_ahead() {
         assert!((WallFrame::along(FRAC_PI_4 + 0.1).angle() + FRAC_PI_4 - 0.1).abs() < 1e-12);
-        assert_eq!(WallFrame::of(&[]), None);
+        assert_eq!(WallFrame::fit(&[]), None);
     }
 }

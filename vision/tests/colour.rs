@@ -188,7 +188,7 @@ fn a_mixture_at_a_stripes_edge_is_the_stripe_unless_floor_has_its_colour() {
 fn cross_validation_counts_every_labelled_pixel_once() {
     for folds in [2, 3, 4] {
         let confusion = TRAINING.cross_validate(folds, &()).unwrap();
-        let all: u64 = PixelClass::LEARNED.map(|class| confusion.of(class)).iter().sum();
+        let all: u64 = PixelClass::LEARNED.map(|class| confusion.pixels(class)).iter().sum();
         let shown = |ground: &&Option<Point2<f64>>| {
             ground.is_some_and(|at| (0.32..=3.0).contains(&at.coords.norm()))
         };

@@ -32,7 +32,7 @@ impl Written {
 
     fn write<M: Message>(&mut self, topic: &str, message: impl FnOnce(Stamp) -> M) {
         self.seconds += 1;
-        let stamp = Stamp::of(self.seconds * SECOND);
+        let stamp = Stamp::from_nanoseconds(self.seconds * SECOND);
         self.writer.write(topic, stamp.nanoseconds(), &message(stamp)).unwrap();
     }
 
@@ -125,7 +125,7 @@ fn the_first_source_of_events_that_is_complete_is_chosen() {
         if has_odometry {
             log.odometry();
         }
-        assert_eq!(Evidence::of(&log.open().1), source);
+        assert_eq!(Evidence::from_topics(&log.open().1), source);
     }
 }
 

@@ -15,7 +15,7 @@ fn without_a_world_a_wrong_percept_is_a_contradiction_or_changes_the_doors() {
         let mut log = good.clone();
         assert_eq!(log.mutate(event, Mutation::Degree, 0), Shows::At(event));
         let mut events = log.recorded();
-        events.arrivals_mut().for_each(|arrival| arrival.form = None);
+        events.arrivals_mut().for_each(|arrival| arrival.shape = None);
         let found = divergence(&events, &driven(without_world(), FOLDING));
         assert!(found.event >= event, "{found:?}");
     }
@@ -45,7 +45,7 @@ fn the_recorded_map_must_be_isomorphic_to_the_map_of_the_explorer() {
     let place = place();
     let mut events = good_log(&place).recorded();
     let config = driven(at_place(&place), FOLDING);
-    let mut map = MapRecord::of(&judged(&events, &config).algorithm.unwrap().run);
+    let mut map = MapRecord::from_walk(&judged(&events, &config).algorithm.unwrap().run);
     events.map = Some(map.clone());
     assert_eq!(judged(&events, &config).divergence, None);
     // The last two vertices change places.

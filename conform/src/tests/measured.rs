@@ -188,7 +188,7 @@ fn only_the_measurement_that_is_tolerated_is_forgotten() {
         let mut events = good.clone();
         events.forget_measurement(&cause);
         let mut is_left = |at: usize| {
-            (arrival_at(&mut events, at).form.is_some(), hallway_before(&mut events, at).is_some())
+            (arrival_at(&mut events, at).shape.is_some(), hallway_before(&mut events, at).is_some())
         };
         assert_eq!(is_left(4), (true, true));
         is_left(2)

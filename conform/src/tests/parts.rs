@@ -146,7 +146,7 @@ fn shortened(event: usize, change: impl Fn(&mut Arrival)) -> (ShortenedRun, Dive
 
 /// More doors than any junction has.
 fn many_doors(arrival: &mut Arrival) {
-    (arrival.degree, arrival.form) = (9, None);
+    (arrival.degree, arrival.shape) = (9, None);
 }
 
 fn wrong_number(arrival: &mut Arrival) {

@@ -32,7 +32,7 @@ fn each_cause_has_a_name_and_a_class() {
         (NotInTurn(TraceOrderError::NoDoor { event: 1 }), "not-in-turn", Log),
         (Number { expected: 2, recorded: 5 }, "number", Log),
         (Form { degree: 3, doors: 2 }, "form", Log),
-        (Aside { off: FRAC_PI_4 }, "aside", Motion),
+        (LeftBetweenDoors { off: FRAC_PI_4 }, "aside", Motion),
         (Entry { off: FRAC_PI_2 }, "entry", Perception),
         (TurnedBack, "turned-back", Motion),
         (Return { before: 3, now: 4 }, "return", Perception),
@@ -81,7 +81,7 @@ fn a_contradictory_measurement_names_its_events() {
 fn arrivals_are_counted_by_the_shape_of_their_junction() {
     let events = log(&place_in("shape-6"), 1).recorded();
     let mut expected = BTreeMap::new();
-    for shape in events.events.iter().filter_map(|event| event.arrival()?.form) {
+    for shape in events.events.iter().filter_map(|event| event.arrival()?.shape) {
         *expected.entry(shape).or_insert(0) += 1;
     }
     assert!(expected.values().any(|&count| count > 1), "{expected:?}");

@@ -123,7 +123,7 @@ impl Options {
                         _ => {}
                     }
                     if self.bare {
-                        (arrival.number, arrival.form, arrival.entry) = (None, None, None);
+                        (arrival.number, arrival.shape, arrival.entry) = (None, None, None);
                         *entry_off = None;
                     }
                 }

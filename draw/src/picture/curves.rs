@@ -72,7 +72,7 @@ impl Curve {
             }));
             from = to;
         }
-        let extent = Extent::of(trace.iter().copied());
+        let extent = Extent::from_points(trace.iter().copied());
         Self { start, pieces, trace, extent }
     }
 

@@ -46,8 +46,8 @@ pub(super) struct FloorScale {
 pub(super) const INKS: usize = 7;
 
 impl Drawing {
-    pub(super) fn of(picture: &WorldPicture) -> Self {
-        Self::sized(picture, DrawingSize::of(picture.graph, picture.vertex_names))
+    pub(super) fn new(picture: &WorldPicture) -> Self {
+        Self::sized(picture, DrawingSize::new(picture.graph, picture.vertex_names))
     }
 
     /// The drawing with discs and names of these sizes.
@@ -104,7 +104,7 @@ impl Drawing {
     pub(super) fn hallways(&self) -> impl Iterator<Item = Extent> + '_ {
         self.floor.into_iter().flat_map(move |floor| {
             self.ends.iter().map(move |ends| {
-                let middle = Extent::of(ends.map(|vertex| self.centres[vertex]));
+                let middle = Extent::from_points(ends.map(|vertex| self.centres[vertex]));
                 middle.widened(floor.width / 2.0)
             })
         })

@@ -127,7 +127,7 @@ impl Extent {
         Self { least: centre - half, most: centre + half }
     }
 
-    pub(super) fn of(points: impl IntoIterator<Item = Point>) -> Self {
+    pub(super) fn from_points(points: impl IntoIterator<Item = Point>) -> Self {
         let mut extent = Self::EMPTY;
         for point in points {
             extent.include(point);

@@ -94,7 +94,7 @@ impl<'a> Whole<'a> {
     fn new(map: &'a OpenGraph) -> Option<Self> {
         let graph = map.with_ends()?;
         let names = names(&graph, map.vertex_count());
-        let mut size = DrawingSize::of(&graph, &names);
+        let mut size = DrawingSize::new(&graph, &names);
         size.discs[map.vertex_count()..].fill(OPEN);
         let drawing = Drawing::sized(&picture(&graph, &names, map.marker()), size);
         let mut edge = vec![0; graph.dart_count()];

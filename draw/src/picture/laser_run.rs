@@ -163,8 +163,8 @@ fn extent(picture: &LaserRunPicture, walls: &BTreeSet<[i32; 2]>) -> Extent {
     });
     let visits = picture.visits.iter().map(|visit| visit.centre);
     let all = cells.chain(picture.way.iter().copied()).chain(visits);
-    let extent = Extent::of(all.map(|[x, y]| Point::new(x, -y)));
-    if extent.least.x.is_finite() { extent } else { Extent::of([Point::default()]) }
+    let extent = Extent::from_points(all.map(|[x, y]| Point::new(x, -y)));
+    if extent.least.x.is_finite() { extent } else { Extent::from_points([Point::default()]) }
 }
 
 /// The visits by their junctions, in the order of the first visits.

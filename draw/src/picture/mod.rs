@@ -198,5 +198,5 @@ impl<'a> From<&'a NamedWorld> for WorldPicture<'a> {
 
 /// The picture as an SVG document. The same picture gives the same bytes.
 pub fn svg(picture: &WorldPicture) -> String {
-    svg::document(picture, &drawing::Drawing::of(picture), svg::Legend::Below)
+    svg::document(picture, &drawing::Drawing::new(picture), svg::Legend::Below)
 }

@@ -87,7 +87,7 @@ pub(super) fn crossings(one: &Curve, other: &Curve) -> Vec<Point> {
         return places;
     }
     for a in one.trace.windows(2) {
-        let step = Extent::of([a[0], a[1]]);
+        let step = Extent::from_points([a[0], a[1]]);
         if !step.meets(&other.extent) {
             continue;
         }

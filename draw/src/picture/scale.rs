@@ -64,7 +64,7 @@ fn given(
     for &[u, v] in lines {
         demand(reach(u) + reach(v) + between, places[u].distance(places[v]));
     }
-    let sides = Extent::of(places.iter().copied()).size();
+    let sides = Extent::from_points(places.iter().copied()).size();
     let side = sides.x.max(sides.y);
     if scale == 0.0 || side == 0.0 {
         return 1.0;
@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn the_nearest_junctions_decide() {
         let world = simple("chain", "a: b, b: a c, c: b");
-        let size = DrawingSize::of(&world.graph, &world.vertex_names);
+        let size = DrawingSize::new(&world.graph, &world.vertex_names);
         let metre = |far: f64| {
             let places = [0.0, 4.0, far].map(|x| Point::new(x, 0.0));
             let placement = Placement::FloorPlan { positions: &[], hallway_width: 1.6 };

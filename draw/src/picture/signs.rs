@@ -137,7 +137,7 @@ mod tests {
             Sign::Arrow { .. } => '>',
             Sign::Bar { .. } => '|',
         };
-        let signs = signs(&picture, &Drawing::of(&picture));
+        let signs = signs(&picture, &Drawing::new(&picture));
         (signs.iter().map(letter).collect(), picture.marker_place().unwrap_or_default())
     }
 

@@ -49,7 +49,7 @@ const KNOB: f64 = 6.5;
 const CLEAR: f64 = 2.0;
 
 impl DrawingSize {
-    pub(super) fn of(graph: &EmbeddedGraph, names: &[String]) -> Self {
+    pub(super) fn new(graph: &EmbeddedGraph, names: &[String]) -> Self {
         if graph.vertex_count() > layout::POLISHED || graph.edge_count() > 2 * layout::POLISHED {
             return Self::plain(graph, names);
         }
@@ -121,7 +121,7 @@ mod tests {
     fn size(names: [&str; 3]) -> DrawingSize {
         let [a, b, c] = names;
         let world = simple("chain", &format!("{a}: {b}, {b}: {a} {c}, {c}: {b}"));
-        DrawingSize::of(&world.graph, &world.vertex_names)
+        DrawingSize::new(&world.graph, &world.vertex_names)
     }
 
     #[test]

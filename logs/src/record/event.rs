@@ -2,7 +2,7 @@
 
 use toposlam_model::{
     driving::{
-        algorithm2::{Command, PathState, Standing},
+        algorithm2::{Command, JunctionState, PathState},
         odometry::Odometry,
         pose::Pose,
         visit::JunctionShape,
@@ -68,17 +68,17 @@ pub struct Arrival {
     /// What was seen of the marker; `None` if that is not recorded.
     pub sighting: Option<Sighting>,
     /// The junction's shape, seen from the entry door, if known.
-    pub form: Option<JunctionShape>,
+    pub shape: Option<JunctionShape>,
     /// The direction of the entry door in the frame of odometry, in radians, if known.
     pub entry: Option<f64>,
 }
 
 impl Arrival {
-    pub fn new(moves: u64, at: &Standing) -> Self {
-        let &Standing { form, percept, entry } = at;
+    pub fn new(moves: u64, at: &JunctionState) -> Self {
+        let &JunctionState { shape, percept, entry } = at;
         let number = Some(u32::try_from(moves).unwrap_or(u32::MAX));
         let Percept { degree, sighting } = percept;
-        Self { number, degree, sighting: Some(sighting), form: Some(form), entry: Some(entry) }
+        Self { number, degree, sighting: Some(sighting), shape: Some(shape), entry: Some(entry) }
     }
 
     /// The percept; `None` if it is not recorded whether the marker was seen.
@@ -88,7 +88,7 @@ impl Arrival {
 
     /// Whether the robot stands before an obstacle, where it sees no junction.
     pub fn is_at_obstacle(&self) -> bool {
-        self.degree == 1 && self.form.is_none() && self.entry.is_some()
+        self.degree == 1 && self.shape.is_none() && self.entry.is_some()
     }
 
     /// Whether another arrival can be at the same junction, entered by a door of this one.

@@ -16,7 +16,7 @@ pub struct MapRecord {
 }
 
 impl MapRecord {
-    pub fn of(journey: &MapWalk) -> Self {
+    pub fn from_walk(journey: &MapWalk) -> Self {
         Self::new(journey.moves(), journey.map(), journey.robot())
     }
 

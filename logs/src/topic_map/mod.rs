@@ -138,7 +138,7 @@ impl TopicMap {
         self.carriers.iter().map(|(role, carrier)| (*role, carrier))
     }
 
-    pub fn of(role: Role, topic: &str) -> Self {
+    pub fn with_topic(role: Role, topic: &str) -> Self {
         Self { carriers: BTreeMap::from([(role, Carrier::usual(topic))]), assumed: None }
     }
 

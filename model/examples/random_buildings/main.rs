@@ -22,7 +22,7 @@ fn main() {
     );
     for junctions in [25, 50, 100, 200] {
         let Totals { edges, certificate, folding, algorithm1, computed } =
-            Totals::of(junctions, more_hallways);
+            Totals::with_size(junctions, more_hallways);
         let mean = |sum: f64| sum / BUILDINGS as f64;
         println!(
             "{junctions:>9} {:>6.1} {:>12.1} {:>8.1} {:>6.2} {:>12.1} {:>6.2} {:>11.2} {:>9.1} ms",

@@ -108,7 +108,7 @@ pub(crate) struct Totals {
 
 impl Totals {
     /// Those of [`BUILDINGS`] buildings of seed 7.
-    pub(crate) fn of(junctions: usize, more_hallways: usize) -> Self {
+    pub(crate) fn with_size(junctions: usize, more_hallways: usize) -> Self {
         let mut random = Random(7);
         let mut totals = Self::default();
         for _ in 0..BUILDINGS {

@@ -34,7 +34,7 @@ impl Shard {
         self.index
     }
 
-    pub fn of(self) -> usize {
+    pub fn total(self) -> usize {
         self.of
     }
 

@@ -27,7 +27,7 @@ pub const JUNCTION_SHAPES: [(JunctionShape, &str); 6] = [
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JunctionEstimate {
     /// The number of images of each shape, by its [`JunctionShape::code`].
-    forms: [u32; 8],
+    shapes: [u32; 8],
     marker: Option<Glimpse>,
     /// Whether an image was taken from where a marker would be seen well.
     looked: bool,
@@ -96,13 +96,13 @@ impl JunctionShape {
 impl JunctionEstimate {
     /// The visit of a robot that knows the junction at which it stands, and whether the marker lies
     /// there.
-    pub fn decided(form: JunctionShape, sighting: Sighting) -> Self {
+    pub fn decided(shape: JunctionShape, sighting: Sighting) -> Self {
         let marker = match sighting {
             Sighting::Pointing(door) => Some(Glimpse { off: 0.0, along_entry: door == Door::BACK }),
             _ => None,
         };
         let mut visit = Self { marker, looked: true, ..Self::default() };
-        visit.forms[form.code()] = AGREEING;
+        visit.shapes[shape.code()] = AGREEING;
         visit
     }
 
@@ -112,12 +112,12 @@ impl JunctionEstimate {
         Self { marker, looked: true, ..Self::default() }
     }
 
-    pub fn see(&mut self, scene: &Scene) {
+    pub fn add_scene(&mut self, scene: &Scene) {
         let entry = match &scene.place {
             Place::Hallway(hallway) => Some(hallway.heading),
             Place::Junction(junction) => {
-                if let Some(form) = JunctionShape::from_view(junction) {
-                    self.forms[form.code()] += 1;
+                if let Some(shape) = JunctionShape::from_view(junction) {
+                    self.shapes[shape.code()] += 1;
                 }
                 self.looked |= APPROACH.contains(&junction.distance());
                 junction.doors.first().map(|entry| entry.direction)
@@ -140,9 +140,9 @@ impl JunctionEstimate {
     }
 
     /// The form of the junction, once two images agree on it and fewer on any other.
-    pub fn form(&self) -> Option<JunctionShape> {
-        let most = self.forms.into_iter().max().filter(|&most| most >= AGREEING)?;
-        let mut leading = (0..8).filter(|&code| self.forms[code] == most);
+    pub fn shape(&self) -> Option<JunctionShape> {
+        let most = self.shapes.into_iter().max().filter(|&most| most >= AGREEING)?;
+        let mut leading = (0..8).filter(|&code| self.shapes[code] == most);
         let code = leading.next()?;
         leading.next().is_none().then(|| JunctionShape::with_code(code))
     }
@@ -151,16 +151,16 @@ impl JunctionEstimate {
     /// What the robot perceives at the junction, once the visit is decided. The marker lies only at
     /// junctions that are Ls; that it does not is known once it would have been seen.
     pub fn percept(&self) -> Option<Percept> {
-        let form = self.form()?;
+        let shape = self.shape()?;
         let sighting = match self.marker {
-            Some(Glimpse { along_entry: true, .. }) if form.is_l() => {
+            Some(Glimpse { along_entry: true, .. }) if shape.is_l() => {
                 Sighting::Pointing(Door::BACK)
             }
-            Some(_) if form.is_l() => Sighting::Pointing(Door(1)),
-            None if form.is_l() && !self.looked => return None,
+            Some(_) if shape.is_l() => Sighting::Pointing(Door(1)),
+            None if shape.is_l() && !self.looked => return None,
             _ => Sighting::Nothing,
         };
-        Some(Percept { degree: form.degree(), sighting })
+        Some(Percept { degree: shape.degree(), sighting })
     }
 }
 
@@ -180,7 +180,7 @@ mod tests {
     fn seen(places: &[Place], marker: Option<MarkerView>) -> JunctionEstimate {
         let mut visit = JunctionEstimate::default();
         for place in places {
-            visit.see(&Scene { place: place.clone(), marker });
+            visit.add_scene(&Scene { place: place.clone(), marker });
         }
         visit
     }
@@ -252,15 +252,15 @@ mod tests {
     #[test]
     fn what_a_robot_knows_of_where_it_stands_is_decided() {
         for code in 0..8 {
-            let form = JunctionShape::with_code(code);
-            let degree = form.degree();
+            let shape = JunctionShape::with_code(code);
+            let degree = shape.degree();
             let mut sightings = vec![Sighting::Nothing];
-            if form.is_l() {
+            if shape.is_l() {
                 sightings.extend([Door::BACK, Door(1)].map(Sighting::Pointing));
             }
             for sighting in sightings {
-                let visit = JunctionEstimate::decided(form, sighting);
-                assert_eq!(visit.form(), Some(form));
+                let visit = JunctionEstimate::decided(shape, sighting);
+                assert_eq!(visit.shape(), Some(shape));
                 assert_eq!(visit.percept(), Some(Percept { degree, sighting }));
             }
         }
@@ -275,7 +275,7 @@ mod tests {
         {
             // A marker under the robot that seems to lie otherwise does not change it.
             let marker = MarkerView { position: [0.5, 0.0], axis: 1.5, door: None };
-            visit.see(&Scene { place: here.clone(), marker: Some(marker) });
+            visit.add_scene(&Scene { place: here.clone(), marker: Some(marker) });
             assert_eq!(visit.percept(), expected);
         }
     }
@@ -292,7 +292,7 @@ mod tests {
         let mut visit = JunctionEstimate::default();
         let mut see = |place: &Place, distance, axis| {
             let marker = MarkerView { position: [distance, 0.0], axis, door: None };
-            visit.see(&Scene { place: place.clone(), marker: Some(marker) });
+            visit.add_scene(&Scene { place: place.clone(), marker: Some(marker) });
         };
         see(&hallway, 0.75, 1.5);
         see(&junction(&[PI, -FRAC_PI_2], 0.5), 0.5, 0.0);

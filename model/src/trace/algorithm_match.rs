@@ -114,7 +114,7 @@ impl<E: Explorer + Default> DefaultRun<E> {
     }
 
     /// Goes on until an error or the end, and returns the state before the last step, if it is kept.
-    fn go_on(
+    fn match_trace(
         &mut self,
         trace: &Trace,
         is_kept: bool,
@@ -158,7 +158,7 @@ fn match_default<E: Explorer + Default + Into<MapWalk>>(
     let mut run = DefaultRun::<E>::new(bound);
     let mut amended_before = 0;
     let reached = loop {
-        let (ended, before) = run.go_on(&trace, amend.is_some());
+        let (ended, before) = run.match_trace(&trace, amend.is_some());
         let stop = match ended {
             Ok(()) => RunStop::after_end(run.moves, run.explorer.purpose(None), &trace),
             Err(error) => Some(RunStop::new(&error, run.moves, run.purpose)),
@@ -192,7 +192,7 @@ fn match_choices(
     let mut search = Search::new(claim, bound);
     let mut amended_before = WalkEvent::Percept(0);
     let (run, found) = loop {
-        let (run, before) = default.go_on(&trace, amend.is_some());
+        let (run, before) = default.match_trace(&trace, amend.is_some());
         let reached = match &run {
             Ok(()) if default.moves == trace.doors().len() => Some(MatchEnd::Mapped),
             Err(MappingError::World(TraceWorldError::End)) => Some(MatchEnd::EndOfTrace),

@@ -8,8 +8,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use toposlam_model::{
     driving::{
         algorithm2::{
-            Command, IDLE, LEAST_FORWARD, LEAST_TURN, LEG, PathExecution, STALLS, Standing, Step,
-            UNIT, UNKNOWNS,
+            Command, IDLE, JunctionState, LEAST_FORWARD, LEAST_TURN, LEG, PathExecution, STALLS,
+            Step, UNIT, UNKNOWNS,
         },
         odometry::Odometry,
         scene::{
@@ -23,7 +23,7 @@ use toposlam_model::{
 
 use crate::{
     choose::{CaseResult, Choose, Exhibit, Stop, claim},
-    hallways::{Budget, FORMS, HALF_WIDTH, HallwayDrive, ImageEvidence, PathDriver},
+    hallways::{Budget, HALF_WIDTH, HallwayDrive, ImageEvidence, JUNCTION_SHAPES, PathDriver},
     lemma::declare,
 };
 
@@ -131,13 +131,13 @@ const SIGHTS: [f64; 3] = [1.1, 0.75, 1.6];
 const ROUNDS: u32 = 200;
 
 /// An image of a junction whose turning point is the given distance ahead, of a robot that then turned.
-fn junction(form: JunctionShape, ahead: f64, turned: f64) -> Place {
+fn junction(shape: JunctionShape, ahead: f64, turned: f64) -> Place {
     let through =
         if ahead == 0.0 { [0.0; 2] } else { [ahead * turned.cos(), -ahead * turned.sin()] };
     let mut doors = Vec::with_capacity(4);
     let mut quarter = 0;
     while quarter < 4 {
-        if form.0[quarter] {
+        if shape.0[quarter] {
             let direction = wrapped(PI - quarter as f64 * FRAC_PI_2 - turned);
             doors.push(CentreLine { through, direction });
         }
@@ -159,11 +159,11 @@ fn any_scene(choose: &mut impl Choose) -> Place {
         0 => Place::Unknown(Reason::NothingFits),
         1 => hallway(0.0, 0.8, 0.8, HallwayStatus::Clear),
         2 => hallway(0.7, 1.2, 0.4, HallwayStatus::Unclear(Unclear::SizesDiffer)),
-        3 => junction(FORMS[1], 0.6, 0.0),
-        4 => junction(FORMS[1], 0.0, 0.0),
-        5 => junction(FORMS[1], 0.0, FRAC_PI_2),
-        6 => junction(FORMS[4], -0.5, 0.0),
-        _ => junction(FORMS[0], 0.04, 0.0),
+        3 => junction(JUNCTION_SHAPES[1], 0.6, 0.0),
+        4 => junction(JUNCTION_SHAPES[1], 0.0, 0.0),
+        5 => junction(JUNCTION_SHAPES[1], 0.0, FRAC_PI_2),
+        6 => junction(JUNCTION_SHAPES[4], -0.5, 0.0),
+        _ => junction(JUNCTION_SHAPES[0], 0.04, 0.0),
     }
 }
 
@@ -184,9 +184,9 @@ fn wide_scene(choose: &mut impl Choose) -> Place {
             hallway(heading, left, right, statuses[usize::from(choose.below(2))])
         }
         _ => {
-            let form = FORMS[usize::from(choose.below(6))];
+            let shape = JUNCTION_SHAPES[usize::from(choose.below(6))];
             let turned = f64::from(choose.below(8)) / 4.0 * PI;
-            let Place::Junction(mut view) = junction(form, 0.0, turned) else { unreachable!() };
+            let Place::Junction(mut view) = junction(shape, 0.0, turned) else { unreachable!() };
             let aside = [0.0, 0.02, -0.02, 2.0, -2.0];
             for axis in 0..2 {
                 view.turning_point[axis] = aside[usize::from(choose.below(5))];
@@ -204,16 +204,16 @@ fn limits(Command { turn, forward }: Command) -> CaseResult {
 }
 
 /// A robot at the turning point of a junction with this shape.
-fn stands(form: JunctionShape) -> Standing {
-    let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
-    Standing { form, percept, entry: PI }
+fn stands(shape: JunctionShape) -> JunctionState {
+    let percept = Percept { degree: shape.degree(), sighting: Sighting::Nothing };
+    JunctionState { shape, percept, entry: PI }
 }
 
 // paper: alg2.2, drive.clear, drive.unclear
 fn no_command_exceeds_a_unit<C: Choose, D: PathDriver, const BEFORE: u8>(
     choose: &mut C,
 ) -> CaseResult {
-    let mut driver = D::begin(TWO_DOORS[1][0], &stands(FORMS[1]), LEG);
+    let mut driver = D::begin(TWO_DOORS[1][0], &stands(JUNCTION_SHAPES[1]), LEG);
     let mut odometry = Odometry::default();
     let before = choose.below(1 + BEFORE);
     for round in 0..=before {
@@ -234,31 +234,31 @@ fn no_command_exceeds_a_unit<C: Choose, D: PathDriver, const BEFORE: u8>(
 
 // paper: alg2.20, alg2.21, alg2.22, alg2.23, alg2.24
 fn the_first_door<C: Choose, D: PathDriver, const TURNS: u8>(choose: &mut C) -> CaseResult {
-    let form = FORMS[usize::from(choose.below(6))];
-    let door = choose.below(form.degree() as u8);
+    let shape = JUNCTION_SHAPES[usize::from(choose.below(6))];
+    let door = choose.below(shape.degree() as u8);
     let queue = match choose.below(3) {
         0 => &[],
         1 => ONE_DOOR[usize::from(door)],
         _ => TWO_DOORS[usize::from(door)][0],
     };
-    let seen = FORMS[usize::from(choose.below(6))];
+    let seen = JUNCTION_SHAPES[usize::from(choose.below(6))];
     let turned = f64::from(choose.below(TURNS)) / f64::from(TURNS) * 2.0 * PI;
     let Place::Junction(view) = junction(seen, 0.0, turned) else { unreachable!() };
-    choose.show(|| Exhibit::Value { name: "known", value: format!("{form:?}, path {queue:?}") });
+    choose.show(|| Exhibit::Value { name: "known", value: format!("{shape:?}, path {queue:?}") });
     choose.show(|| Exhibit::Value { name: "image", value: format!("{view:?}") });
     let exit = view.doors.get(usize::from(door)).map_or(0.0, |line| line.direction);
     // Odometry knows that the robot has turned.
     let odometry = Odometry { position: [0.0; 2], heading: wrapped(turned) };
-    let mut driver = D::begin(queue, &stands(form), LEG);
+    let mut driver = D::begin(queue, &stands(shape), LEG);
     let step = driver.round(&Scene { place: Place::Junction(view), marker: None }, odometry);
     let left = driver.queue().len();
     match step {
         Err(_) => claim("it does not give up", false),
-        Ok(Step::Arrived(standing)) => {
-            claim("a path without doors is done", queue.is_empty() && seen == form)?;
-            claim("the junction is the one known", standing.form == form)
+        Ok(Step::Arrived(state)) => {
+            claim("a path without doors is done", queue.is_empty() && seen == shape)?;
+            claim("the junction is the one known", state.shape == shape)
         }
-        Ok(Step::Go(command)) if seen == form => {
+        Ok(Step::Go(command)) if seen == shape => {
             limits(command)?;
             claim("one door is taken", left + 1 == queue.len())?;
             let turn = wrapped(exit - command.turn).abs();
@@ -277,7 +277,7 @@ fn the_first_door<C: Choose, D: PathDriver, const TURNS: u8>(choose: &mut C) -> 
 /// The end of a drive.
 struct End {
     /// The robot's belief; `None` if it gave up.
-    standing: Option<Standing>,
+    state: Option<JunctionState>,
     /// The mistaken images since the last door, by their shapes.
     mistaken: Vec<JunctionShape>,
     /// Whether an image showed the junction from where a marker would be seen.
@@ -291,25 +291,25 @@ fn driven<C: Choose, D: PathDriver>(
     queue: &'static [Door],
 ) -> Result<End, Stop> {
     choose.show(|| Exhibit::Value { name: "path", value: format!("{queue:?} {drive:?}") });
-    let mut driver = D::begin(queue, &drive.junction(0).standing(), LEG);
+    let mut driver = D::begin(queue, &drive.junction(0).junction_state(), LEG);
     // The number of doors by which the robot has left, and whether it has taken one more.
     let (mut left_by, mut takes) = (0, false);
     // The shapes that images showed since then, and the mistaken ones.
-    let (mut seen_forms, mut mistaken) = (vec![drive.junction(0).form; 2], Vec::new());
+    let (mut seen_shapes, mut mistaken) = (vec![drive.junction(0).shape; 2], Vec::new());
     let mut looked = true;
     for _ in 0..ROUNDS {
         let (scene, evidence) = drive.image(choose);
         // The next junction, or the one at which the robot stands.
         let here = *drive.junction(left_by);
         match (evidence, &scene.place) {
-            (ImageEvidence::Mistake(form), _) => {
-                seen_forms.push(form);
-                mistaken.push(form);
+            (ImageEvidence::Mistake(shape), _) => {
+                seen_shapes.push(shape);
+                mistaken.push(shape);
             }
             (ImageEvidence::Truth, Place::Junction(view))
                 if here.distance(&drive.robot) < HALFWAY =>
             {
-                seen_forms.push(here.form);
+                seen_shapes.push(here.shape);
                 looked |= (0.2..=0.8).contains(&view.distance());
             }
             _ => {}
@@ -323,16 +323,16 @@ fn driven<C: Choose, D: PathDriver>(
             claim("one door is taken at a time", driver.queue().len() + 1 == open && !takes)?;
             claim(
                 "two images agree",
-                FORMS.into_iter().any(|form| agreeing(&seen_forms, form) > 1),
+                JUNCTION_SHAPES.into_iter().any(|shape| agreeing(&seen_shapes, shape) > 1),
             )?;
             takes = true;
         }
         let command = match step {
-            Err(_) => return Ok(End { standing: None, mistaken, looked }),
-            Ok(Step::Arrived(standing)) => {
+            Err(_) => return Ok(End { state: None, mistaken, looked }),
+            Ok(Step::Arrived(state)) => {
                 claim("every door was taken", left_by == queue.len() && !takes)?;
-                claim("two images agree", agreeing(&seen_forms, standing.form) > 1)?;
-                return Ok(End { standing: Some(standing), mistaken, looked });
+                claim("two images agree", agreeing(&seen_shapes, state.shape) > 1)?;
+                return Ok(End { state: Some(state), mistaken, looked });
             }
             Ok(Step::Go(command)) => command,
         };
@@ -345,7 +345,7 @@ fn driven<C: Choose, D: PathDriver>(
         }
         if takes && command.forward > 0.0 {
             (left_by, takes) = (left_by + 1, false);
-            (seen_forms, mistaken, looked) = (Vec::new(), Vec::new(), false);
+            (seen_shapes, mistaken, looked) = (Vec::new(), Vec::new(), false);
         }
         drive.carry_out(choose, command);
     }
@@ -353,8 +353,8 @@ fn driven<C: Choose, D: PathDriver>(
 }
 
 /// The number of these with this shape.
-fn agreeing(forms: &[JunctionShape], form: JunctionShape) -> usize {
-    forms.iter().filter(|&&other| other == form).count()
+fn agreeing(shapes: &[JunctionShape], shape: JunctionShape) -> usize {
+    shapes.iter().filter(|&&other| other == shape).count()
 }
 
 /// A robot nearer than this to a junction is not at another one, in metres.
@@ -366,9 +366,9 @@ fn doors_in_order<C: Choose, D: PathDriver, const SURPRISES: u8, const MISTAKES:
 ) -> CaseResult {
     let (first, door) = EXITS[usize::from(choose.below(14))];
     let (second, then) = EXITS[usize::from(choose.below(14))];
-    let legs = [(Door(door), 3.2, FORMS[second]), (Door(then), 3.2, FORMS[3])];
+    let legs = [(Door(door), 3.2, JUNCTION_SHAPES[second]), (Door(then), 3.2, JUNCTION_SHAPES[3])];
     let budget = Budget { surprises: SURPRISES, mistakes: MISTAKES, failures: SURPRISES };
-    let mut drive = HallwayDrive::new(FORMS[first], &legs, SIGHTS[0], budget);
+    let mut drive = HallwayDrive::new(JUNCTION_SHAPES[first], &legs, SIGHTS[0], budget);
     let queue = TWO_DOORS[door as usize][then as usize];
     driven::<_, D>(choose, &mut drive, queue).map(|_| ())
 }
@@ -379,8 +379,8 @@ fn always_ends<C: Choose, D: PathDriver, const BEFORE: u8, const PERIOD: u8>(
 ) -> CaseResult {
     const FAR: f64 = 2.0;
     let queue: &'static [Door] = [&[], ONE_DOOR[2], TWO_DOORS[1][0]][usize::from(choose.below(3))];
-    let form = FORMS[if queue.len() == 1 { 4 } else { 1 }];
-    let mut driver = D::begin(queue, &stands(form), FAR);
+    let shape = JUNCTION_SHAPES[if queue.len() == 1 { 4 } else { 1 }];
+    let mut driver = D::begin(queue, &stands(shape), FAR);
     let before = usize::from(choose.below(1 + BEFORE));
     let period = 1 + usize::from(choose.below(PERIOD));
     let mut moments = Vec::with_capacity(before + period);
@@ -419,20 +419,21 @@ fn always_ends<C: Choose, D: PathDriver, const BEFORE: u8, const PERIOD: u8>(
 // paper: alg2.7, alg2.15, alg2.22, drive.path
 fn arrives<C: Choose, D: PathDriver, const SURPRISES: u8>(choose: &mut C) -> CaseResult {
     let (first, door) = EXITS[usize::from(choose.below(14))];
-    let form = FORMS[usize::from(choose.below(6))];
+    let shape = JUNCTION_SHAPES[usize::from(choose.below(6))];
     let length = [3.2, 4.1][usize::from(choose.below(2))];
     let sight = SIGHTS[usize::from(choose.below(3))];
     let budget = Budget { surprises: SURPRISES, mistakes: 0, failures: 0 };
-    let mut drive = HallwayDrive::new(FORMS[first], &[(Door(door), length, form)], sight, budget);
-    let End { standing, looked, .. } = driven::<_, D>(choose, &mut drive, ONE_DOOR[door as usize])?;
-    let Some(standing) = standing else {
-        return claim("it gives up only if it could not see a marker", form.is_l() && !looked);
+    let mut drive =
+        HallwayDrive::new(JUNCTION_SHAPES[first], &[(Door(door), length, shape)], sight, budget);
+    let End { state, looked, .. } = driven::<_, D>(choose, &mut drive, ONE_DOOR[door as usize])?;
+    let Some(state) = state else {
+        return claim("it gives up only if it could not see a marker", shape.is_l() && !looked);
     };
     let there = drive.junction(1);
     claim("it is in the next junction", there.distance(&drive.robot) < HALF_WIDTH)?;
-    let expected = there.standing();
-    claim("it knows its shape", standing.form == form && standing.percept == expected.percept)?;
-    let off = wrapped(standing.entry - expected.entry).abs();
+    let expected = there.junction_state();
+    claim("it knows its shape", state.shape == shape && state.percept == expected.percept)?;
+    let off = wrapped(state.entry - expected.entry).abs();
     claim("it knows its entry door", off < 1e-6)
 }
 
@@ -441,18 +442,18 @@ fn no_false_arrival<C: Choose, D: PathDriver, const SURPRISES: u8, const MISTAKE
     choose: &mut C,
 ) -> CaseResult {
     let (first, door) = EXITS[usize::from(choose.below(6))];
-    let form = FORMS[usize::from(choose.below(6))];
+    let shape = JUNCTION_SHAPES[usize::from(choose.below(6))];
     let sight = SIGHTS[usize::from(choose.below(3))];
     let budget = Budget { surprises: SURPRISES, mistakes: MISTAKES, failures: SURPRISES };
-    let mut drive = HallwayDrive::new(FORMS[first], &[(Door(door), 3.2, form)], sight, budget);
-    let End { standing, mistaken, .. } =
-        driven::<_, D>(choose, &mut drive, ONE_DOOR[door as usize])?;
-    let Some(standing) = standing else { return Ok(()) };
-    if agreeing(&mistaken, standing.form) < 2 {
+    let mut drive =
+        HallwayDrive::new(JUNCTION_SHAPES[first], &[(Door(door), 3.2, shape)], sight, budget);
+    let End { state, mistaken, .. } = driven::<_, D>(choose, &mut drive, ONE_DOOR[door as usize])?;
+    let Some(state) = state else { return Ok(()) };
+    if agreeing(&mistaken, state.shape) < 2 {
         let there = drive.junction(1);
-        claim("its shape is the true one", standing.form == form)?;
+        claim("its shape is the true one", state.shape == shape)?;
         claim("it is at the next junction", there.distance(&drive.robot) < HALFWAY)?;
-        let off = wrapped(standing.entry - there.standing().entry).abs();
+        let off = wrapped(state.entry - there.junction_state().entry).abs();
         claim("it knows its entry door", off < PI / 4.0)?;
     }
     Ok(())

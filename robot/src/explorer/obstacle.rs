@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use toposlam_logs::record::{Arrival, EventKind, FrameSensor, RunObserver};
 use toposlam_model::{
     driving::{
-        algorithm2::{Command, PathExecution, Standing},
+        algorithm2::{Command, JunctionState, PathExecution},
         odometry::Odometry,
         scene::{Place, Scene, wrapped},
     },
@@ -45,13 +45,16 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         (self.hallway, self.measured) = (None, ArrivalMeasurement::default());
         let number = Some(u32::try_from(self.last_move).unwrap_or(u32::MAX));
         let Percept { degree, sighting } = DEAD_END;
-        let (sighting, form, entry) = (Some(sighting), None, Some(back));
-        self.emit(EventKind::Arrival(Arrival { number, degree, sighting, form, entry }));
+        let (sighting, shape, entry) = (Some(sighting), None, Some(back));
+        self.emit(EventKind::Arrival(Arrival { number, degree, sighting, shape, entry }));
     }
 
     /// Turns to a direction in the frame of odometry, and drives to the next junction. A junction to which an
     /// obstacle does not let the robot come is not the next one if it lies behind.
-    pub(super) fn go_in_direction(&mut self, direction: f64) -> Result<Standing, ExplorerError> {
+    pub(super) fn go_in_direction(
+        &mut self,
+        direction: f64,
+    ) -> Result<JunctionState, ExplorerError> {
         let here = self.robot.odometry().odometry;
         self.command(Command { turn: here.seen(direction), forward: 0.0 })?;
         let junction = self.stall.and_then(|stall| stall.junction);

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use toposlam_logs::record::{Arrival, EventKind, Frame, FrameSensor, RunObserver};
 use toposlam_model::{
     driving::{
-        algorithm2::{Command, PathState, Standing, UNIT},
+        algorithm2::{Command, JunctionState, PathState, UNIT},
         scene::{JunctionView, Place, wrapped},
     },
     mapping::{ArrivalMeasurement, Relocate},
@@ -98,7 +98,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     /// Drives until the robot is at a junction, wherever it stands.
-    pub(super) fn find_junction(&mut self) -> Result<Standing, ExplorerError> {
+    pub(super) fn find_junction(&mut self) -> Result<JunctionState, ExplorerError> {
         self.wait_for_sight()?;
         let heading = self.robot.odometry().odometry.heading;
         let mut directions = DIRECTIONS.repeat(TRIES).into_iter();
@@ -110,12 +110,12 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 if tries < DIRECTIONS.len() * TRIES { self.leave_by_door(tries)? } else { None };
             let direction = left.unwrap_or_else(|| wrapped(heading + relative));
             match self.go_in_direction(direction) {
-                Ok(standing) => {
+                Ok(state) => {
                     // How many moves lead there is not known.
                     self.hallway = None;
-                    let arrival = Arrival::new(self.last_move, &standing);
-                    self.stand(standing, Arrival { number: None, ..arrival });
-                    return Ok(standing);
+                    let arrival = Arrival::new(self.last_move, &state);
+                    self.arrive(state, Arrival { number: None, ..arrival });
+                    return Ok(state);
                 }
                 Err(ExplorerError::Lost { .. } | ExplorerError::NoImage { .. }) if !is_last => {}
                 Err(error) => return Err(error),

@@ -83,7 +83,7 @@ impl LiveBase {
 
     fn sample(&mut self, wheels: WheelSpeeds) {
         let (speed, turning) = (wheels.speed(), wheels.turn_rate());
-        self.track.push(Sample { speed, turning, reckoned: self.reading() });
+        self.track.push(Sample { speed, turning, reading: self.reading() });
     }
 
     /// Sets the wheel speeds and waits until the period is over; after a stop, until the robot

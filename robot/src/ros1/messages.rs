@@ -178,7 +178,7 @@ fn twist_of(wheels: WheelSpeeds) -> Twist {
 fn wheel_speeds(twist: Twist) -> WheelSpeeds {
     let (speed, turning) = (twist.linear.x, twist.angular.z);
     if speed.is_finite() && turning.is_finite() {
-        WheelSpeeds::of(speed, turning)
+        WheelSpeeds::from_motion(speed, turning)
     } else {
         WheelSpeeds::STOP
     }
@@ -193,7 +193,7 @@ mod tests {
 
     fn reckoning() -> Reckoning {
         let at = odometry::Odometry { position: [1.5, -0.25], heading: 2.5 };
-        Reckoning { stamp: 3 * SECOND + 7, at, wheels: WheelSpeeds::of(0.1, 0.2) }
+        Reckoning { stamp: 3 * SECOND + 7, at, wheels: WheelSpeeds::from_motion(0.1, 0.2) }
     }
 
     #[test]
@@ -227,7 +227,7 @@ mod tests {
     fn a_twist_beyond_the_limits_is_cut_and_one_of_no_numbers_is_a_stop() {
         let body = |numbers: &[f64]| numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
         let read = |numbers: &[f64]| read_twist(&Vec::<u8>::clone(&body(numbers)));
-        assert_eq!(read(&[9.0, 0.0, 0.0, 0.0, 0.0, 0.0]), Some(WheelSpeeds::of(0.2, 0.0)));
+        assert_eq!(read(&[9.0, 0.0, 0.0, 0.0, 0.0, 0.0]), Some(WheelSpeeds::from_motion(0.2, 0.0)));
         assert_eq!(read(&[f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.1]), Some(WheelSpeeds::STOP));
         assert_eq!(read(&[0.0; 5]), None);
         assert_eq!(read(&[0.0; 7]), None);

@@ -56,7 +56,7 @@ impl<B: Base> Drive<'_, B> {
             if left.abs() <= NEAR_ANGLE {
                 break;
             }
-            let now = self.0.drive(WheelSpeeds::of(0.0, left / lasting))?.odometry;
+            let now = self.0.drive(WheelSpeeds::from_motion(0.0, left / lasting))?.odometry;
             turned += wrapped(now.heading - last.heading);
             last = now;
         }
@@ -80,7 +80,7 @@ impl<B: Base> Drive<'_, B> {
                 break;
             }
             let off = wrapped(begun.heading - odometry.heading);
-            self.0.drive(WheelSpeeds::of(most / lasting, MEND * off / PERIOD))?;
+            self.0.drive(WheelSpeeds::from_motion(most / lasting, MEND * off / PERIOD))?;
         }
         self.stop()
     }

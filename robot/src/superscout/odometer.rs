@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn a_quarter_of_a_circle_ends_as_far_ahead_as_aside() {
         // A radius of 1 m, at 0.1 m/s: a quarter in 5 pi seconds.
-        let wheels = WheelSpeeds::of(0.1, 0.1);
+        let wheels = WheelSpeeds::from_motion(0.1, 0.1);
         let steps = 63;
         let mut odometer = Odometer::default();
         for _ in 0..steps {
@@ -63,10 +63,10 @@ mod tests {
     #[test]
     fn a_reading_is_in_tenths_of_an_inch_and_of_a_degree() {
         let mut odometer = Odometer::default();
-        odometer.add(WheelSpeeds::of(0.1, 0.0), 1.0);
+        odometer.add(WheelSpeeds::from_motion(0.1, 0.0), 1.0);
         // 0.1 m are 39.37 tenths of an inch.
         assert!((odometer.reading().position[0] - 39.0 * 0.00254).abs() < 1e-12);
-        odometer.add(WheelSpeeds::of(0.0, 0.1), 1.0);
+        odometer.add(WheelSpeeds::from_motion(0.0, 0.1), 1.0);
         // 0.1 radians are 57.3 tenths of a degree.
         assert!((odometer.reading().heading.to_degrees() - 5.7).abs() < 1e-9);
     }

@@ -15,7 +15,7 @@ impl WheelSpeeds {
 
     /// The wheel speeds for a speed ahead, in metres a second, and a turn rate counter-clockwise, in
     /// radians a second, within the robot's limits.
-    pub fn of(speed: f64, turn_rate: f64) -> Self {
+    pub fn from_motion(speed: f64, turn_rate: f64) -> Self {
         let speed = speed.clamp(-SPEED, SPEED);
         let half = turn_rate.clamp(-TURN_RATE, TURN_RATE) * WHEEL_BASE / 2.0;
         Self { left: speed - half, right: speed + half }
@@ -41,7 +41,7 @@ mod tests {
     // paper: hardware.drive
     #[test]
     fn turning_on_the_spot_the_wheels_run_against_each_other() {
-        let wheels = WheelSpeeds::of(0.0, 0.2);
+        let wheels = WheelSpeeds::from_motion(0.0, 0.2);
         assert!((wheels.left + 0.2 * 0.1726).abs() < 1e-12);
         assert!((wheels.right - 0.2 * 0.1726).abs() < 1e-12);
     }
@@ -49,14 +49,14 @@ mod tests {
     proptest! {
         #[test]
         fn no_command_is_beyond_the_limits(speed in -9.0..9.0, turn_rate in -9.0..9.0) {
-            let wheels = WheelSpeeds::of(speed, turn_rate);
+            let wheels = WheelSpeeds::from_motion(speed, turn_rate);
             prop_assert!(wheels.speed().abs() <= SPEED + 1e-12);
             prop_assert!(wheels.turn_rate().abs() <= TURN_RATE + 1e-12);
         }
 
         #[test]
         fn what_is_within_them_is_done(speed in -0.2..0.2, turn_rate in -0.3..0.3) {
-            let wheels = WheelSpeeds::of(speed, turn_rate);
+            let wheels = WheelSpeeds::from_motion(speed, turn_rate);
             prop_assert!((wheels.speed() - speed).abs() < 1e-12);
             prop_assert!((wheels.turn_rate() - turn_rate).abs() < 1e-12);
         }

@@ -100,14 +100,14 @@ impl Judge {
         watch: &dyn Watch,
     ) -> Result<Option<JudgedVisit>, JudgingError> {
         let Some(last) = views.last() else { return Ok(None) };
-        let Some(Truth::Junction(JunctionTruth { vertex, form: Some(form), .. })) = last.truth()
+        let Some(Truth::Junction(JunctionTruth { vertex, shape: Some(shape), .. })) = last.truth()
         else {
             return Err(off_the_floor(last));
         };
         let here = last.marker.filter(|&dart| last.plan.graph().vertex(dart) == vertex);
         let marker = here.and_then(|_| last.marker()?.door);
         let sighting = marker.map_or(Sighting::Nothing, Sighting::Pointing);
-        let percept = Percept { degree: form.degree(), sighting };
+        let percept = Percept { degree: shape.degree(), sighting };
         let building = last.building();
         let rig = self.rig(last, calibration);
         let mut judged = Vec::with_capacity(views.len());
@@ -118,11 +118,11 @@ impl Judge {
             }
             let image = view.render(rig, &building);
             let view = self.judged(view, &image)?;
-            visit.see(&view.scene);
+            visit.add_scene(&view.scene);
             judged.push(view);
         }
-        let decided = visit.form().zip(visit.percept());
-        Ok(Some(JudgedVisit { views: judged, form, percept, decided }))
+        let decided = visit.shape().zip(visit.percept());
+        Ok(Some(JudgedVisit { views: judged, shape, percept, decided }))
     }
 
     /// The image of a view, its scene, and a picture of each processing stage.

@@ -48,7 +48,7 @@ pub struct JudgedView {
 pub struct JudgedVisit {
     pub views: Vec<JudgedView>,
     /// The true shape of the junction, seen from its entry.
-    pub form: JunctionShape,
+    pub shape: JunctionShape,
     pub percept: Percept,
     /// The shape and percept that were decided, once two images agreed.
     pub decided: Option<(JunctionShape, Percept)>,
@@ -77,7 +77,7 @@ impl JudgedView {
         match &self.truth {
             Truth::Hallway(_) => Some(SceneClass::Hallway),
             Truth::Between(..) => None,
-            Truth::Junction(junction) => junction.form.map(SceneClass::Junction),
+            Truth::Junction(junction) => junction.shape.map(SceneClass::Junction),
         }
     }
 
@@ -97,7 +97,7 @@ impl JudgedView {
 
 impl JudgedVisit {
     pub fn is_wrong(&self) -> bool {
-        self.decided.is_some_and(|(form, _)| form != self.form)
+        self.decided.is_some_and(|(shape, _)| shape != self.shape)
     }
 }
 

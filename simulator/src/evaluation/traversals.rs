@@ -89,10 +89,10 @@ impl TraversalSampler {
 
         let (robot, sensor) = equipment.robot(&config, number);
         let monitor = GroundTruthMonitor::at(&plan, marker, entry);
-        let standing = monitor.standing(pose);
+        let state = monitor.junction_state(pose);
         let mut explorer = RobotExplorer::new(robot, sensor, (monitor, StoppedBy(watch)));
-        if let Some(standing) = standing {
-            explorer = explorer.standing_at(standing);
+        if let Some(state) = state {
+            explorer = explorer.at_junction(state);
         }
         let error = explorer.traverse(door).err();
         let (robot, (monitor, _)) = explorer.into_parts();

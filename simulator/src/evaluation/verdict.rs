@@ -112,7 +112,7 @@ fn kind(view: &JunctionView) -> Option<JunctionKind> {
 /// The true directions of the doors in the view's order; `None` if one of them is another door. If
 /// the robot has turned, any door may come first.
 fn same_doors(truth: &JunctionTruth, view: &JunctionView) -> Option<Vec<f64>> {
-    let rotations = if truth.form.is_some() { 1 } else { truth.doors.len() };
+    let rotations = if truth.shape.is_some() { 1 } else { truth.doors.len() };
     let mut doors = truth.doors.clone();
     for _ in 0..rotations {
         let same =
@@ -207,13 +207,13 @@ pub(super) mod tests {
     /// A junction with these doors, so far ahead.
     pub(in crate::evaluation) fn junction(
         doors: &[f64],
-        form: Option<JunctionShape>,
+        shape: Option<JunctionShape>,
         ahead: f64,
     ) -> JunctionTruth {
         JunctionTruth {
             vertex: Vertex(0),
             kind: [JunctionKind::DeadEnd, JunctionKind::L, JunctionKind::T][doors.len() - 1],
-            form,
+            shape,
             doors: doors.to_vec(),
             turning_point: [ahead, 0.0],
         }

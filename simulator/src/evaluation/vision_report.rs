@@ -276,10 +276,10 @@ mod tests {
         let pointing = |door| Sighting::Pointing(Door(door));
         let visit = |sighting, decided: Option<(JunctionShape, Sighting)>| JudgedVisit {
             views: Vec::new(),
-            form: L,
+            shape: L,
             percept: Percept { degree: 2, sighting },
             decided: decided
-                .map(|(form, sighting)| (form, Percept { degree: form.degree(), sighting })),
+                .map(|(shape, sighting)| (shape, Percept { degree: shape.degree(), sighting })),
         };
         let dead_end = JunctionShape([true, false, false, false]);
         let visits = [

@@ -164,10 +164,10 @@ fn read_shards(path: &Path, shards: &mut Vec<FoundShard>) -> Result<(), CliError
 /// The shards of one size without a whole result. Those that should not be there are problems.
 fn missing_shards(edges: usize, found: &[FoundShard], problems: &mut Vec<String>) -> Vec<String> {
     let mut missing = Vec::new();
-    let (of, size) = (found[0].shard.of(), counted(edges, "edge"));
+    let (of, size) = (found[0].shard.total(), counted(edges, "edge"));
     let mut by_index: BTreeMap<usize, Vec<&str>> = BTreeMap::new();
     for FoundShard { place, shard, line } in found {
-        if shard.of() == of {
+        if shard.total() == of {
             by_index.entry(shard.index()).or_default().push(place);
         } else {
             problems.push(format!("{place}: {size}: {shard} is not one of {of} shards"));

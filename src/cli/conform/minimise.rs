@@ -131,7 +131,7 @@ fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
     let mut by_door = None;
     for CheckedEvent { source, kind } in &events.events {
         let time = source.time.saturating_sub(begun);
-        let stamp = Stamp::of(time);
+        let stamp = Stamp::from_nanoseconds(time);
         match *kind {
             CheckedKind::Arrival { arrival, entry_off, hallway } => {
                 // The robot leaves along the door, and comes in along the entry door.
@@ -160,8 +160,8 @@ fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
             }
             CheckedKind::Door { door, number, off } => {
                 log.write(Door::TOPIC, time, &door_message(stamp, number, door))?;
-                let entered = last.and_then(|arrival| Some((arrival.form?, arrival.entry?)));
-                let leads = entered.and_then(|(form, entry)| direction(form, entry, door));
+                let entered = last.and_then(|arrival| Some((arrival.shape?, arrival.entry?)));
+                let leads = entered.and_then(|(shape, entry)| direction(shape, entry, door));
                 by_door = leads.zip(off).map(|(leads, off)| leads + off);
             }
             _ => {}
@@ -176,7 +176,7 @@ fn write_seen(seen: &[SensedScene], head: &Run) -> Result<Vec<u8>, LogWriteError
     let begun = seen.first().map_or(0, |seen| seen.source.time);
     for SensedScene { source, scene, odometry: there } in seen {
         let time = source.time.saturating_sub(begun);
-        let stamp = Stamp::of(time);
+        let stamp = Stamp::from_nanoseconds(time);
         log.write(ODOM, time, &odometry(stamp, there))?;
         log.write(Scene::TOPIC, time, &scene_message(stamp, scene))?;
     }

@@ -24,8 +24,8 @@ impl DriveArguments {
     pub(in crate::cli) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         self.options.check_places(false)?;
         let settings = self.options.settings(None)?;
-        let eyes = self.eyes()?;
-        let (sensor, live, frame_kind) = match &eyes {
+        let sensors = self.sensors()?;
+        let (sensor, live, frame_kind) = match &sensors {
             Some((camera, colours)) => {
                 let sensor = Box::new(Sensor::new(camera, colours));
                 (RobotSensor::Camera(sensor), LiveSensor::Camera, "images")
@@ -48,7 +48,7 @@ impl DriveArguments {
             Err(error) => return Err(CliError::at("--ros", error)),
         };
         let command = self.given.command(&["toposlam", "drive"]);
-        let mut log = self.options.recorder(command, &settings, None, 0, eyes.as_ref())?;
+        let mut log = self.options.recorder(command, &settings, None, 0, sensors.as_ref())?;
         let story_out: Option<&mut dyn Write> =
             if self.options.json { None } else { Some(&mut *out) };
         let head = format!("A robot at {}.", self.ros);
@@ -97,7 +97,7 @@ impl DriveArguments {
     }
 
     /// The camera and the colours of the building; `None` with a laser scanner.
-    fn eyes(&self) -> Result<Option<(Camera, ColourModel)>, CliError> {
+    fn sensors(&self) -> Result<Option<(Camera, ColourModel)>, CliError> {
         let needed = |option: &str| CliError::at(option, "a robot with a camera needs it");
         let (unused, other) = match (self.sensor, &self.calibration, &self.colours) {
             (SensorChoice::Laser, None, None) => (&["images"][..], "camera"),

@@ -90,7 +90,7 @@ pub(super) fn check(
 pub(super) fn check_marker(
     plan: &FloorPlan,
     facing: Dart,
-    eyes: &LearnedSensors,
+    sensors: &LearnedSensors,
     look: &'static BuildingLook,
 ) -> Result<(), CliError> {
     let effects = Effects { body: 1.0, ..Effects::plain() };
@@ -100,8 +100,8 @@ pub(super) fn check_marker(
     let [east, north] = onto.vector();
     let position = [x + BEFORE * east, y + BEFORE * north];
     let pose = Pose { position, heading: angle(onto.reversed()) };
-    let image = render(eyes.rig(), &building, pose, &effects, 0);
-    match eyes.sensor(look).sense(&image) {
+    let image = render(sensors.rig(), &building, pose, &effects, 0);
+    match sensors.sensor(look).sense(&image) {
         Ok(Scene { marker: Some(_), .. }) => Ok(()),
         Ok(_) => {
             let cause =

@@ -50,7 +50,7 @@ impl OCam {
     /// Returns an error if the file is not as it should be. No bytes make it panic.
     pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
         let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
-        let mut lines = Lines::of(text);
+        let mut lines = Lines::new(text);
         let direct = lines.counted("the polynomial")?;
         let inverse = lines.counted("the inverse polynomial")?;
         let [row, column] = lines.numbers("the centre's row and column")?;
@@ -163,7 +163,7 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    fn of(text: &'a str) -> Self {
+    fn new(text: &'a str) -> Self {
         let lines = (1..).zip(text.lines().map(str::trim));
         Self {
             lines: Box::new(lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))),

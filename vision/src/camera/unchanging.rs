@@ -70,7 +70,8 @@ pub fn mask(file: &str, images: &[RgbImage], rim: &Rim) -> Result<Mask, Unchangi
         centre: rim.centre.map(|at| (at + 0.5) / f64::from(factor) - 0.5),
         radius: rim.radius / f64::from(factor),
     };
-    let slopes: Vec<Slopes> = images.iter().map(|image| Slopes::of(image, factor)).collect();
+    let slopes: Vec<Slopes> =
+        images.iter().map(|image| Slopes::from_image(image, factor)).collect();
     let seen = seen(&slopes, &disc)?;
     let (last_u, last_v) = (seen.width() - 1, seen.height() - 1);
     let pixels = (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
@@ -133,7 +134,7 @@ struct Slopes {
 }
 
 impl Slopes {
-    fn of(image: &RgbImage, factor: u32) -> Self {
+    fn from_image(image: &RgbImage, factor: u32) -> Self {
         let image = shrunk(image, factor);
         let (width, height) = image.dimensions();
         // The noise of a slope after smoothing, from the noise before it; there are six slopes.

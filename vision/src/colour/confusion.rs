@@ -36,13 +36,13 @@ impl Confusion {
         }
     }
 
-    pub fn of(&self, is: PixelClass) -> u64 {
+    pub fn pixels(&self, is: PixelClass) -> u64 {
         self.row(is).map_or(0, |row| row.iter().sum())
     }
 
     /// The share of a class's pixels that is given this class; `None` without pixels.
     pub fn recall(&self, class: PixelClass) -> Option<f64> {
-        share(self.row(class)?[Self::place(class)?], self.of(class))
+        share(self.row(class)?[Self::place(class)?], self.pixels(class))
     }
 
     /// The share of the pixels given a class that is of this class; `None` without pixels.
@@ -69,7 +69,7 @@ mod tests {
         confusion.count(PixelClass::Floor, PixelClass::Unknown, 1);
         confusion.count(PixelClass::Stripe, PixelClass::Stripe, 3);
         assert_eq!(confusion.pixels, [[6, 1, 0, 0, 1], [0, 3, 0, 0, 0], [0; 5], [0; 5]]);
-        assert_eq!(confusion.of(PixelClass::Floor), 8);
+        assert_eq!(confusion.pixels(PixelClass::Floor), 8);
         assert_eq!(confusion.recall(PixelClass::Floor), Some(0.75));
         assert_eq!(confusion.precision(PixelClass::Floor), Some(1.0));
         assert_eq!(confusion.recall(PixelClass::Stripe), Some(1.0));

@@ -27,7 +27,7 @@ const fn ring_start(chroma: u8) -> usize {
 
 impl Bin {
     /// The bin of a colour, red, green and blue from 0 to 255.
-    pub(super) fn of([red, green, blue]: [f64; 3]) -> Self {
+    pub(super) fn from_rgb([red, green, blue]: [f64; 3]) -> Self {
         let value = red.max(green).max(blue);
         let chroma = value - red.min(green).min(blue);
         let ring = (chroma / CHROMA_STEP) as u8;
@@ -173,7 +173,7 @@ mod tests {
         let colours =
             [[255, 0, 0], [255, 255, 0], [0, 255, 0], [0, 255, 255], [0, 0, 255], [255, 0, 255]];
         for (sixth, colour) in colours.into_iter().enumerate() {
-            let bin = Bin::of(colour.map(f64::from));
+            let bin = Bin::from_rgb(colour.map(f64::from));
             assert_eq!(bin, Bin { value: 31, chroma: 63, hue: 63 * sixth as u16 });
         }
     }
@@ -184,7 +184,7 @@ mod tests {
             let grey = f64::from(grey);
             let bin = Bin { value: (grey / 8.0) as u8, chroma: 0, hue: 0 };
             for noise in [[0.0; 3], [-3.0, 0.0, 0.0], [0.0, -3.0, -1.0], [-2.0, 0.0, -3.0]] {
-                assert_eq!(Bin::of(noise.map(|noise| (grey + noise).max(0.0))), bin);
+                assert_eq!(Bin::from_rgb(noise.map(|noise| (grey + noise).max(0.0))), bin);
             }
         }
     }
@@ -192,7 +192,8 @@ mod tests {
     #[test]
     fn the_circle_of_hues_is_closed() {
         // Two reds on both sides of the circle's beginning, and their common neighbour.
-        let (purple, orange) = (Bin::of([200.0, 40.0, 44.0]), Bin::of([200.0, 44.0, 40.0]));
+        let (purple, orange) =
+            (Bin::from_rgb([200.0, 40.0, 44.0]), Bin::from_rgb([200.0, 44.0, 40.0]));
         assert_eq!([purple.hue, orange.hue], [239, 1]);
         let red = Bin { hue: 0, ..purple };
         let lattice = Lattice::new();
@@ -226,7 +227,7 @@ mod tests {
                 let mut other = colour;
                 other[channel] += 4;
                 let [bin, other] = [colour, other].map(|colour| {
-                    Bin::of(colour.map(|level: i32| f64::from(level) + 1.5)).in_plane()
+                    Bin::from_rgb(colour.map(|level: i32| f64::from(level) + 1.5)).in_plane()
                 });
                 assert!(beside(&lattice, bin).contains(&other), "{colour:?}, {channel}");
             }
@@ -236,7 +237,7 @@ mod tests {
     proptest! {
         #[test]
         fn colours_of_a_bin_are_alike(a in any::<[u8; 3]>(), b in any::<[u8; 3]>()) {
-            let bins = [a, b].map(|colour| Bin::of(colour.map(f64::from)));
+            let bins = [a, b].map(|colour| Bin::from_rgb(colour.map(f64::from)));
             for bin in bins {
                 prop_assert!(bin.value < VALUES && bin.chroma <= Bin::most_chroma(bin.value));
                 prop_assert!(bin.hue < Bin::hues(bin.chroma));
@@ -247,7 +248,7 @@ mod tests {
 
         #[test]
         fn more_light_keeps_the_hue(colour in any::<[u8; 3]>(), light in 0.6..1.6_f64) {
-            let bin = Bin::of(colour.map(f64::from));
+            let bin = Bin::from_rgb(colour.map(f64::from));
             prop_assert_eq!(bin.under(1.0), bin);
             let lit = bin.under(light);
             prop_assert!(lit.value < VALUES && lit.hue < Bin::hues(lit.chroma));

@@ -68,7 +68,7 @@ impl ColourModel {
 
     pub fn table(&self) -> ColourTable {
         let classes = self.classes();
-        let cell = |cell| classes[Bin::of(table::centre(cell)).index()];
+        let cell = |cell| classes[Bin::from_rgb(table::centre(cell)).index()];
         ColourTable { classes: (0..CELLS).map(cell).collect() }
     }
 
@@ -76,7 +76,7 @@ impl ColourModel {
     // paper: sense.classify, marker-sense.colour
     fn classes(&self) -> Vec<PixelClass> {
         let mut best = vec![(0.0, PixelClass::Unknown); BINS];
-        let smoothed = self.smoothing.of(&self.histograms);
+        let smoothed = self.smoothing.applied_to(&self.histograms);
         for ((class, densities), prior) in
             PixelClass::LEARNED.into_iter().zip(smoothed).zip(self.priors)
         {
@@ -92,7 +92,7 @@ impl ColourModel {
 }
 
 impl Smoothing {
-    fn of(self, histograms: &[Histogram; 4]) -> [Vec<f64>; 4] {
+    fn applied_to(self, histograms: &[Histogram; 4]) -> [Vec<f64>; 4] {
         let lattice = Lattice::new();
         let near = self.near();
         histograms.each_ref().map(|histogram| {

@@ -307,7 +307,7 @@ fn histograms(examples: &[&Example], floor: [f64; 3]) -> [Histogram; 4] {
     cells.map(|(_, cells)| {
         let mut bins: Vec<(Option<Bin>, u64)> = vec![(None, 0); BINS];
         for (cell, &count) in cells.iter().enumerate().filter(|(_, count)| **count > 0) {
-            let bin = Bin::of(table::centre(cell));
+            let bin = Bin::from_rgb(table::centre(cell));
             let (known, counted) = &mut bins[bin.index()];
             *known = Some(bin);
             *counted += count;

@@ -33,11 +33,11 @@ impl DriftMeter {
         Self { params, matcher, ..Self::default() }
     }
 
-    pub fn see(&mut self, scan: &Scan, odometry: &Odometry) {
+    pub fn add_scan(&mut self, scan: &Scan, odometry: &Odometry) {
         let params = self.params.map;
         let Some(driven) = params.driven(&mut self.last, odometry) else { return };
         self.way += driven;
-        self.matcher.see(scan, odometry, self.way, self.way - params.memory);
+        self.matcher.add_scan(scan, odometry, self.way, self.way - params.memory);
         let correction = self.matcher.correction().rotation.angle();
         let (begun, before) = *self.begun.get_or_insert((self.way, correction));
         if self.way - begun >= STRETCH {

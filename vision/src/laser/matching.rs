@@ -48,7 +48,7 @@ impl ScanMatcher {
     /// Takes the next scan, the odometry at its time, and the length of the robot's way until then, in
     /// metres. Walls that were last seen before `forgotten` on that way are forgotten. Returns the pose in
     /// the frame of the local map.
-    pub(super) fn see(
+    pub(super) fn add_scan(
         &mut self,
         scan: &Scan,
         odometry: &Odometry,
@@ -199,7 +199,7 @@ fn wall_points(scan: &Scan, params: &MatchingParams, way: f64) -> Vec<WallPoint>
 /// The unit vector across a line of points, if it is straight: if their deviation from it is at most this
 /// many metres.
 fn normal(line: &[Point2<f64>], straight: f64) -> Option<Vector2<f64>> {
-    let PrincipalAxis { along, minor, .. } = PrincipalAxis::of(line);
+    let PrincipalAxis { along, minor, .. } = PrincipalAxis::fit(line);
     (minor <= straight * straight).then_some(Vector2::new(-along.y, along.x))
 }
 

@@ -114,7 +114,7 @@ impl PlaceSensor for LaserSensor {
             from_robot(&Odometry { heading, ..*odometry }).inverse()
         });
         let placed = moved(&frame, odometry);
-        let robot = self.matcher.see(scan, &placed, self.way, self.way - params.memory);
+        let robot = self.matcher.add_scan(scan, &placed, self.way, self.way - params.memory);
         let position = Point2::from(robot.position);
         let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
         self.add(rays(scan, &robot, &params), position, side);

@@ -56,7 +56,7 @@ impl<S: Copy + Default> ApproachRule<S> {
         Self { approach: None, seen, hallway: None, way: WayLength::default() }
     }
 
-    pub(super) fn see(&mut self, log: &mut VisitLog<S>, at: S, view: &PlaceView) {
+    pub(super) fn add_view(&mut self, log: &mut VisitLog<S>, at: S, view: &PlaceView) {
         let Some(scene) = &view.scene else { return };
         let onwards = self.approach.as_mut().map(|approach| &mut approach.onwards);
         for way in [&mut self.way].into_iter().chain(onwards) {
@@ -80,7 +80,7 @@ impl<S: Copy + Default> ApproachRule<S> {
 
     pub(super) fn status(&self) -> Option<SeenPlace> {
         let approach = self.approach.as_ref().filter(|approach| approach.is_visit())?;
-        let arms = approach.estimate.form().map_or_else(Vec::new, |shape| approach.arms(shape));
+        let arms = approach.estimate.shape().map_or_else(Vec::new, |shape| approach.arms(shape));
         Some(SeenPlace { centre: approach.turning_point, clearance: 0.0, arms })
     }
 
@@ -95,7 +95,7 @@ impl<S: Copy + Default> ApproachRule<S> {
             if !approach.is_over(robot) {
                 // A junction that is still ahead looks like a hallway; its marker is visible.
                 if !approach.is_visit() {
-                    approach.estimate.see(scene);
+                    approach.estimate.add_scene(scene);
                 }
                 self.approach = Some(approach);
                 return;
@@ -108,7 +108,7 @@ impl<S: Copy + Default> ApproachRule<S> {
             self.seen = JunctionEstimate::default();
         }
         self.hallway = Some(robot.heading);
-        self.seen.see(scene);
+        self.seen.add_scene(scene);
     }
 
     /// The robot has left a junction or passed it.
@@ -149,14 +149,14 @@ impl<S: Copy + Default> ApproachRule<S> {
             approach.onwards.add(*robot);
         }
         let junction = junction.entered_from(robot.seen(approach.entry));
-        approach.estimate.see(&Scene { place: Place::Junction(junction), marker });
+        approach.estimate.add_scene(&Scene { place: Place::Junction(junction), marker });
     }
 
     /// Adds a visit; it is undecided if the images do not decide the percept.
     fn visited(&mut self, log: &mut VisitLog<S>, approach: &Approach<S>, exit: Option<(S, f64)>) {
         let undecided = approach.undecided(approach.visited);
         let Approach { estimate, driven, onwards, .. } = approach;
-        let (Some(shape), Some(percept)) = (estimate.form(), estimate.percept()) else {
+        let (Some(shape), Some(percept)) = (estimate.shape(), estimate.percept()) else {
             log.push(undecided, |_| None);
             return;
         };
@@ -242,7 +242,7 @@ mod tests {
         let mut visits = Visits::by_camera(marked);
         for (number, (place, position, heading)) in places.iter().enumerate() {
             let scene = Scene { place: place.clone(), marker: None };
-            visits.see(number, &scene, &Odometry { position: *position, heading: *heading });
+            visits.add_frame(number, &scene, &Odometry { position: *position, heading: *heading });
         }
         visits.finish()
     }

@@ -133,7 +133,7 @@ impl<S: Copy + Default> MappedRule<S> {
     }
 
     /// Takes a view, which is the last one of the sensor.
-    pub(super) fn see(
+    pub(super) fn add_view(
         &mut self,
         log: &mut VisitLog<S>,
         at: S,

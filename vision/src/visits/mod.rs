@@ -65,11 +65,11 @@ impl<S: Copy + Default> Visits<SceneSensor, S> {
 
 impl<P: PlaceSensor, S: Copy + Default> Visits<P, S> {
     /// Takes the next frame, and the odometry at its time. Returns the view in it, as [`PlaceSensor::view`] does.
-    pub fn see(&mut self, at: S, frame: &P::Frame, odometry: &Odometry) -> Option<PlaceView> {
+    pub fn add_frame(&mut self, at: S, frame: &P::Frame, odometry: &Odometry) -> Option<PlaceView> {
         let view = self.sensor.view(frame, odometry)?;
         match &mut self.rule {
-            VisitRule::Approach(rule) => rule.see(&mut self.log, at, &view),
-            VisitRule::Mapped(rule) => rule.see(&mut self.log, at, &view, &self.sensor),
+            VisitRule::Approach(rule) => rule.add_view(&mut self.log, at, &view),
+            VisitRule::Mapped(rule) => rule.add_view(&mut self.log, at, &view, &self.sensor),
         }
         Some(view)
     }

@@ -125,7 +125,7 @@ fn grown(
     let last = fold(percepts.get(..=doors.len())?, doors).ok()?;
     let mut trail = FoldedTrail::new(first).ok()?;
     let mut vertices = vec![TrailVertex { entry: trail.pose(), from: None }];
-    let mut stages = vec![Stage::of(&trail, &vertices, &last)];
+    let mut stages = vec![Stage::new(&trail, &vertices, &last)];
     for (&door, &percept) in doors.iter().zip(later) {
         let leaving = trail.behind(trail.pose(), door);
         let from = trail.vertex(leaving);
@@ -134,13 +134,13 @@ fn grown(
         if trail.trail_vertex_count() > vertices.len() {
             vertices.push(TrailVertex { entry, from: Some((from, leaving)) });
         }
-        stages.push(Stage::of(&trail, &vertices, &last));
+        stages.push(Stage::new(&trail, &vertices, &last));
     }
     Some((vertices, stages, last))
 }
 
 impl Stage {
-    fn of(trail: &FoldedTrail, vertices: &[TrailVertex], last: &FoldedTrail) -> Self {
+    fn new(trail: &FoldedTrail, vertices: &[TrailVertex], last: &FoldedTrail) -> Self {
         // The layer of each vertex of the folded trail, and the number of layers of each last vertex.
         let mut layer: HashMap<usize, usize> = HashMap::new();
         let mut heights: HashMap<usize, usize> = HashMap::new();

@@ -78,7 +78,7 @@ struct Drawn {
 static GALLERY: LazyLock<Vec<Drawn>> = LazyLock::new(|| {
     let draw = |world: NamedWorld| {
         let picture = WorldPicture::from(&world);
-        let drawing = Drawing::of(&picture);
+        let drawing = Drawing::new(&picture);
         let svg = svg::document(&picture, &drawing, svg::Legend::Below);
         Drawn { world, drawing, svg }
     };
@@ -139,7 +139,7 @@ fn a_world_in_the_plane_is_drawn_without_crossings() {
         let world = random(1000 + seed, vertices, vertices + (seed as usize) % 3);
         if world.graph.genus() == 0 {
             planar += 1;
-            assert_eq!(crossings(&Drawing::of(&WorldPicture::from(&world))), 0, "{}", world.name);
+            assert_eq!(crossings(&Drawing::new(&WorldPicture::from(&world))), 0, "{}", world.name);
         }
     }
     assert!(planar > 100, "{planar}");
@@ -220,7 +220,7 @@ fn the_same_positions_give_the_same_places_whatever_the_edges() {
     let centres = |seed| {
         let mut world = random(seed, 6, 8);
         world.positions = Some(positions.clone());
-        let drawing = Drawing::of(&WorldPicture::from(&world));
+        let drawing = Drawing::new(&WorldPicture::from(&world));
         assert!(drawing.floor.is_none());
         drawing.centres.iter().map(|&at| (at - drawing.centres[0]).angle()).collect::<Vec<_>>()
     };
@@ -234,8 +234,8 @@ fn the_same_positions_give_the_same_places_whatever_the_edges() {
 #[test]
 fn a_cycle_of_two_thousand_edges_is_a_circle() {
     let world = cycle(2000);
-    let drawing = Drawing::of(&WorldPicture::from(&world));
-    let middle = Extent::of(drawing.centres.iter().copied()).centre();
+    let drawing = Drawing::new(&WorldPicture::from(&world));
+    let middle = Extent::from_points(drawing.centres.iter().copied()).centre();
     let radii: Vec<_> = drawing.centres.iter().map(|at| at.distance(middle)).collect();
     assert!(radii.iter().all(|radius| (radius / radii[0] - 1.0).abs() < 1e-3));
     let steps = drawing.ends.iter().map(|&[u, v]| drawing.centres[u].distance(drawing.centres[v]));

@@ -50,7 +50,7 @@ fn large(graph: &EmbeddedGraph) -> Layout {
         return straight(radial::tree(graph), graph);
     }
     if graph.genus() == 0 {
-        let subdivision = Subdivision::of(graph);
+        let subdivision = Subdivision::new(graph);
         if subdivision.nodes <= PLANAR {
             let points = planar::without_crossings(&subdivision, planar::EVENING);
             return layout_of(graph, &subdivision, &points);
@@ -66,7 +66,7 @@ pub(super) fn given(graph: &EmbeddedGraph, positions: &[[f64; 2]]) -> Layout {
 }
 
 fn in_the_plane(graph: &EmbeddedGraph) -> Layout {
-    let subdivision = Subdivision::of(graph);
+    let subdivision = Subdivision::new(graph);
     let mut points = planar::without_crossings(&subdivision, 0);
     refine::refine(&subdivision, &mut points, Keep::Embedding);
     layout_of(graph, &subdivision, &points)

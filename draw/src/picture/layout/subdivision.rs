@@ -24,7 +24,7 @@ pub(super) struct Subdivision {
 
 impl Subdivision {
     /// The graph with two bends in each loop and one in each parallel edge.
-    pub(super) fn of(graph: &EmbeddedGraph) -> Self {
+    pub(super) fn new(graph: &EmbeddedGraph) -> Self {
         let ends = |dart| (graph.vertex(dart), graph.vertex(graph.opposite(dart)));
         let mut parallel = BTreeMap::new();
         for (dart, other) in graph.edges() {
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn a_loop_becomes_a_triangle_and_keeps_its_faces() {
-        let web = Subdivision::of(&multigraph("loops", "u: a a b b").graph);
+        let web = Subdivision::new(&multigraph("loops", "u: a a b b").graph);
         assert_eq!(web.nodes, 5);
         let mut sizes: Vec<_> = web.faces().iter().map(Vec::len).collect();
         sizes.sort_unstable();

@@ -75,7 +75,7 @@ fn score(vertices: &[Point], edges: &[(usize, usize)]) -> f64 {
             aligned += 0.9;
         }
     }
-    let extent = Extent::of(vertices.iter().copied());
+    let extent = Extent::from_points(vertices.iter().copied());
     let size = extent.size();
     let scale = size.x.max(size.y).max(1e-9);
     let centre = extent.centre();

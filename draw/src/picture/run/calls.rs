@@ -30,7 +30,7 @@ struct Badge {
 }
 
 impl Badges {
-    pub(super) fn of(ground: &Ground, calls: &[PageArrival]) -> Self {
+    pub(super) fn new(ground: &Ground, calls: &[PageArrival]) -> Self {
         let mut counted: BTreeMap<_, BTreeMap<_, PageArrival>> = BTreeMap::new();
         for (number, call) in calls.iter().enumerate() {
             // What is at no junction stands for itself.

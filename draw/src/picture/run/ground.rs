@@ -28,9 +28,9 @@ pub(super) struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    pub(super) fn of(plan: &'a FloorPlan) -> Self {
+    pub(super) fn new(plan: &'a FloorPlan) -> Self {
         let corners = plan.floor().flat_map(|floor| [floor.least, floor.greatest]);
-        let sides = Extent::of(corners.map(|[x, y]| Point::new(x, y))).size();
+        let sides = Extent::from_points(corners.map(|[x, y]| Point::new(x, y))).size();
         Self { plan, metre: (SIDE / sides.x.max(sides.y)).clamp(METRE[0], METRE[1]) }
     }
 
@@ -61,7 +61,7 @@ impl<'a> Ground<'a> {
     fn hallways(&self) -> impl Iterator<Item = Extent> + '_ {
         self.plan
             .floor()
-            .map(|floor| Extent::of([floor.least, floor.greatest].map(|it| self.at(it))))
+            .map(|floor| Extent::from_points([floor.least, floor.greatest].map(|it| self.at(it))))
     }
 
     /// The name of each junction: outside, at a side without a door, above or below if possible.

@@ -23,7 +23,7 @@ use ground::Ground;
 
 /// The picture of a run as an SVG document. The same run gives the same bytes.
 pub fn run_svg(run_data: &RunPageData) -> String {
-    let drawing = RunDrawing::of(run_data);
+    let drawing = RunDrawing::new(run_data);
     let extent = drawing.extent();
     let metre = Some(drawing.ground.metre);
     let (title, caption) = (&run_data.world.name, &run_data.ending);
@@ -34,7 +34,7 @@ pub fn run_svg(run_data: &RunPageData) -> String {
 
 /// The drawing alone, with the positions of the frames.
 pub(crate) fn run_drawing(run_data: &RunPageData) -> Drawn {
-    let drawing = RunDrawing::of(run_data);
+    let drawing = RunDrawing::new(run_data);
     let extent = drawing.extent();
     let sheet = Sheet { title: "", caption: "", extent, metre: None, up: NORTH };
     let mut places = Vec::new();
@@ -62,9 +62,9 @@ struct RunDrawing<'a> {
 }
 
 impl<'a> RunDrawing<'a> {
-    fn of(run_data: &'a RunPageData) -> Self {
-        let ground = Ground::of(&run_data.plan);
-        let badges = Badges::of(&ground, &run_data.calls);
+    fn new(run_data: &'a RunPageData) -> Self {
+        let ground = Ground::new(&run_data.plan);
+        let badges = Badges::new(&ground, &run_data.calls);
         Self { run_data, ground, badges }
     }
 
@@ -162,7 +162,7 @@ mod tests {
             let signs = of_class(&document, "marker");
             let shape = |sign: usize| points(signs[sign].attribute("d").unwrap());
             let place = drawn.places[0];
-            let corners = Extent::of(shape(0));
+            let corners = Extent::from_points(shape(0));
             assert!(corners.centre().distance(place) < 0.1);
             let long = Point::new(ahead.x.abs(), ahead.y.abs());
             assert!((corners.size().dot(long) - 0.60 * drawn.metre).abs() < 0.2);

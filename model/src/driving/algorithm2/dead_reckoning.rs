@@ -150,7 +150,7 @@ impl DeadReckoning {
     }
 
     /// The robot has come to the junction and takes a door there.
-    pub(super) fn stand(&mut self) {
+    pub(super) fn stop_at_junction(&mut self) {
         self.stage = Stage::AtJunction;
     }
 

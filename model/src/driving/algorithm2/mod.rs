@@ -66,14 +66,14 @@ pub enum Step {
     /// Execute this command, then take the next image. The command may be empty.
     Go(Command),
     /// The path is complete: the robot is at the turning point of its last junction.
-    Arrived(Standing),
+    Arrived(JunctionState),
 }
 
 /// The robot between two paths: at the turning point of a junction that it has identified.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Standing {
+pub struct JunctionState {
     /// The shape of the junction, seen from its entry door.
-    pub form: JunctionShape,
+    pub shape: JunctionShape,
     /// What the robot perceives there.
     pub percept: Percept,
     /// The direction of the entry door, in the frame of odometry.
@@ -103,8 +103,8 @@ enum Seen {
 
 impl<'a> PathExecution<'a> {
     // paper: drive.path
-    pub fn new(queue: &'a [Door], from: &Standing) -> Self {
-        let visit = JunctionEstimate::decided(from.form, from.percept.sighting);
+    pub fn new(queue: &'a [Door], from: &JunctionState) -> Self {
+        let visit = JunctionEstimate::decided(from.shape, from.percept.sighting);
         Self::at_junction(queue, visit, from.entry)
     }
 
@@ -239,24 +239,24 @@ impl<'a> PathExecution<'a> {
         // Two images decide an estimate, and doors are counted in an image that agrees with them. If
         // this one does not, take another from the same place.
         let agreed =
-            |standing: &Standing| JunctionShape::from_view(junction) == Some(standing.form);
-        let Some(standing) = self.standing().filter(agreed) else {
+            |state: &JunctionState| JunctionShape::from_view(junction) == Some(state.shape);
+        let Some(state) = self.junction_state().filter(agreed) else {
             return Ok(Step::Go(Command::default()));
         };
         let door = match (self.door, self.queue.split_first()) {
             (Some(door), _) => door,
             // 21, 22
-            (None, None) => return Ok(Step::Arrived(standing)),
+            (None, None) => return Ok(Step::Arrived(state)),
             // 23
             (None, Some((&door, rest))) => {
                 self.queue = rest;
-                self.reckoning.stand();
+                self.reckoning.stop_at_junction();
                 door
             }
         };
         let Some(CentreLine { direction: exit, .. }) = junction.doors.get(door.0 as usize).copied()
         else {
-            return Err(LostReason::NoSuchDoor { door, degree: standing.form.degree() });
+            return Err(LostReason::NoSuchDoor { door, degree: state.shape.degree() });
         };
         if exit.abs() > STRAIGHT {
             // 24: before the robot leaves, an image must show the doors turned by this angle.
@@ -279,7 +279,7 @@ impl<'a> PathExecution<'a> {
             Place::Hallway(_) if self.reckoning.is_at_junction() => Seen::Unknown,
             Place::Hallway(hallway) => {
                 self.reckoning.hallway(hallway.heading)?;
-                self.visit.see(scene);
+                self.visit.add_scene(scene);
                 Seen::Hallway(*hallway)
             }
             Place::Junction(junction) if self.has_left(junction) => {
@@ -298,14 +298,15 @@ impl<'a> PathExecution<'a> {
     fn junction(&mut self, scene: &Scene, junction: &JunctionView) -> Seen {
         let Some(entry) = self.reckoning.entry(junction) else { return Seen::Unknown };
         let junction = junction.clone().entered_from(entry);
-        let form = JunctionShape::from_view(&junction);
-        let decided = self.reckoning.is_at_junction().then(|| self.standing()).flatten();
+        let shape = JunctionShape::from_view(&junction);
+        let decided = self.reckoning.is_at_junction().then(|| self.junction_state()).flatten();
         match decided {
-            Some(standing) if form != Some(standing.form) => return Seen::Unknown,
+            Some(state) if shape != Some(state.shape) => return Seen::Unknown,
             Some(_) => {}
-            None => self
-                .visit
-                .see(&Scene { place: Place::Junction(junction.clone()), marker: scene.marker }),
+            None => self.visit.add_scene(&Scene {
+                place: Place::Junction(junction.clone()),
+                marker: scene.marker,
+            }),
         }
         self.reckoning.at(&junction);
         Seen::Junction(junction)
@@ -331,9 +332,9 @@ impl<'a> PathExecution<'a> {
     }
 
     /// The junction where the robot is, once two images agree on it.
-    fn standing(&self) -> Option<Standing> {
-        let (form, percept) = (self.visit.form()?, self.visit.percept()?);
-        Some(Standing { form, percept, entry: self.reckoning.entry })
+    fn junction_state(&self) -> Option<JunctionState> {
+        let (shape, percept) = (self.visit.shape()?, self.visit.percept()?);
+        Some(JunctionState { shape, percept, entry: self.reckoning.entry })
     }
 
     /// The hallway's direction onwards.

@@ -26,9 +26,9 @@ struct Robot<'a> {
 impl<'a> Robot<'a> {
     /// At the turning point of a junction, its back to the entry door.
     fn at(doors: &[f64], queue: &'a [Door]) -> Self {
-        let form = JunctionShape::from_view(&view(doors, 0.0, 0.0)).unwrap();
-        let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
-        let from = Standing { form, percept, entry: PI };
+        let shape = JunctionShape::from_view(&view(doors, 0.0, 0.0)).unwrap();
+        let percept = Percept { degree: shape.degree(), sighting: Sighting::Nothing };
+        let from = JunctionState { shape, percept, entry: PI };
         Self { path: PathExecution::new(queue, &from), odometry: Odometry::default() }
     }
 
@@ -86,10 +86,10 @@ impl<'a> Robot<'a> {
         assert_eq!(self.path.state(), state);
     }
 
-    fn arrives(&mut self, scene: &Scene) -> Standing {
+    fn arrives(&mut self, scene: &Scene) -> JunctionState {
         let step = self.round(scene);
-        let Ok(Step::Arrived(standing)) = step else { panic!("it arrives, and not: {step:?}") };
-        standing
+        let Ok(Step::Arrived(state)) = step else { panic!("it arrives, and not: {step:?}") };
+        state
     }
 
     fn gives_up(&mut self, scene: &Scene) -> LostReason {
@@ -225,10 +225,10 @@ fn at_the_turning_point_with_no_door_left_the_path_is_done() {
         [(DEAD_END, 1), (L_LEFT, 2), (L_RIGHT, 2), (T_STEM, 3), (T_LEFT, 3), (T_RIGHT, 3)]
     {
         for distance in [0.05, 0.0, -0.2] {
-            let standing = Robot::come_to(doors, NEXT).arrives(&junction(doors, distance, 0.0));
-            assert_eq!(Some(standing.form), JunctionShape::from_view(&view(doors, 0.0, 0.0)));
-            assert_eq!(standing.percept, Percept { degree, sighting: Sighting::Nothing });
-            assert_near(standing.entry.abs(), PI);
+            let state = Robot::come_to(doors, NEXT).arrives(&junction(doors, distance, 0.0));
+            assert_eq!(Some(state.shape), JunctionShape::from_view(&view(doors, 0.0, 0.0)));
+            assert_eq!(state.percept, Percept { degree, sighting: Sighting::Nothing });
+            assert_near(state.entry.abs(), PI);
         }
     }
 }
@@ -282,13 +282,13 @@ fn the_entry_door_is_the_one_behind_on_arrival() {
     for first in 0..3 {
         let mut view = view(T_STEM, 0.05, 0.0);
         view.doors.rotate_left(first);
-        let standing = Robot::before(T_STEM, NEXT).arrives(&scene(Place::Junction(view)));
-        assert_eq!(standing.form, JunctionShape([true, true, false, true]));
-        assert_near(standing.entry.abs(), PI);
+        let state = Robot::before(T_STEM, NEXT).arrives(&scene(Place::Junction(view)));
+        assert_eq!(state.shape, JunctionShape([true, true, false, true]));
+        assert_near(state.entry.abs(), PI);
     }
     // Images show its direction better than odometry.
-    let standing = Robot::before(T_STEM, NEXT).arrives(&junction(T_STEM, 0.05, 0.2));
-    assert_near(standing.entry, PI - 0.2);
+    let state = Robot::before(T_STEM, NEXT).arrives(&junction(T_STEM, 0.05, 0.2));
+    assert_near(state.entry, PI - 0.2);
 }
 
 #[test]
@@ -297,7 +297,7 @@ fn a_marker_seen_from_the_hallway_lies_at_the_next_junction() {
     let marker = Some(MarkerView { position: [0.6, 0.0], axis: 0.0, door: None });
     robot.sees(&Scene { marker, ..hallway(0.0) });
     robot.sees(&junction(L_LEFT, 0.1, 0.0));
-    let Standing { percept, .. } = robot.arrives(&junction(L_LEFT, 0.1, 0.0));
+    let JunctionState { percept, .. } = robot.arrives(&junction(L_LEFT, 0.1, 0.0));
     assert_eq!(percept, Percept { degree: 2, sighting: Sighting::Pointing(Door::BACK) });
 }
 
@@ -372,7 +372,7 @@ fn at_the_start_the_robot_gets_to_know_its_junction_with_its_back_to_the_marker(
     let mut robot = Robot { path: PathExecution::at_start(&odometry), odometry };
     let here = junction(L_LEFT, 0.0, 0.0);
     assert_eq!(robot.sees(&here), Command::default(), "it takes two images there too");
-    let Standing { percept, entry, .. } = robot.arrives(&here);
+    let JunctionState { percept, entry, .. } = robot.arrives(&here);
     assert_eq!(percept, Percept { degree: 2, sighting: Sighting::Pointing(Door::BACK) });
     assert_near(entry, 2.0 - PI);
 }

@@ -208,7 +208,7 @@ pub(crate) fn map_with_recovery<W: Relocate + ObservedWorld>(
     let mut ended = if earlier.is_empty() {
         explore(recovery.exploration, &mut recovery.world)
     } else {
-        recovery.go_on()
+        recovery.recover_from_here()
     };
     loop {
         match ended.and_then(|()| recovery.check_map()) {
@@ -267,7 +267,7 @@ impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
             }
             error @ (MappingError::InvalidStep(_) | MappingError::GaveUp(_)) => return Err(error),
         }
-        self.go_on()
+        self.recover_from_here()
     }
 
     /// The percept that contradicts the others may be the false one, so the next walk begins at the next place.
@@ -294,7 +294,7 @@ impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
     }
 
     /// Looks for the marker, and goes on with the walks that agree. The next walk begins at the marker.
-    fn go_on(&mut self) -> Mapped<W> {
+    fn recover_from_here(&mut self) -> Mapped<W> {
         let (known, _) = self.walks.fold_most(0);
         let seen = match self.exploration.find_marker(known, &mut self.world) {
             Err(error @ MappingError::Contradiction(Contradiction::NoMarker)) => {

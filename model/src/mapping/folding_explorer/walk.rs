@@ -48,7 +48,7 @@ impl FoldingRun {
             };
             let open = self.trail.opposite(self.trail.behind(self.trail.pose(), door)).is_none();
             before = self.trail.vertex_count() + usize::from(open);
-            perceived = self.take(door, world)?;
+            perceived = self.go_through(door, world)?;
             believed = next;
         }
         self.report_folding(before, world);
@@ -69,7 +69,7 @@ impl FoldingRun {
 
     fn take_open<W: ObservedWorld>(&mut self, open: Dart, world: &mut W) -> Mapped<W, Percept> {
         self.go_to(open, world)?;
-        self.take(self.trail.door(self.trail.pose(), open), world)
+        self.go_through(self.trail.door(self.trail.pose(), open), world)
     }
 
     pub(super) fn go_to<W: ObservedWorld>(&mut self, dart: Dart, world: &mut W) -> Mapped<W> {
@@ -79,14 +79,14 @@ impl FoldingRun {
             self.from_robot.darts_to(&self.trail, dart, &mut way);
             for &dart in &way {
                 let door = self.trail.door(self.trail.pose(), dart);
-                self.take(door, world)?;
+                self.go_through(door, world)?;
             }
             self.way = way;
         }
         Ok(())
     }
 
-    fn take<W: ObservedWorld>(&mut self, door: Door, world: &mut W) -> Mapped<W, Percept> {
+    fn go_through<W: ObservedWorld>(&mut self, door: Door, world: &mut W) -> Mapped<W, Percept> {
         let percept = self.walk.go(door, world)?;
         if let Err(error) = self.trail.step(door, percept) {
             return Err(match error {

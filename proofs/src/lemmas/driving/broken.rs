@@ -36,7 +36,7 @@ const IDLE_FOR_EVER: u8 = 7;
 const NO_STOP: u8 = 8;
 
 impl<const FLAW: u8> PathDriver for Broken<FLAW> {
-    fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self {
+    fn begin(queue: &'static [Door], from: &JunctionState, leg: f64) -> Self {
         let (driven, skipped): (&'static [Door], usize) = match (FLAW, queue) {
             (KEPT, [first, _]) => (TWO_DOORS[first.0 as usize][first.0 as usize], 0),
             (LEFT_OUT, [_, second]) => (ONE_DOOR[second.0 as usize], 1),

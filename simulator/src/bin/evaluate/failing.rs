@@ -47,7 +47,7 @@ pub(super) fn write(
         print_view(&mut lines, judged, calibration, None)?;
     }
     let failed_visits: Vec<_> =
-        visits.iter().filter(|visit| visit.decided != Some((visit.form, visit.percept))).collect();
+        visits.iter().filter(|visit| visit.decided != Some((visit.shape, visit.percept))).collect();
     for judged in failed_visits.iter().flat_map(|visit| &visit.views) {
         print_view(&mut lines, judged, calibration, Some(judged.view.number))?;
     }

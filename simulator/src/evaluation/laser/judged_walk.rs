@@ -131,7 +131,7 @@ impl WalkSampler {
                 return None;
             }
             let Ok(scan) = scanner.scan(step.pose, number as u64, step.time) else { continue };
-            let Some(view) = visits.see(number, &scan, &step.odometry) else { continue };
+            let Some(view) = visits.add_frame(number, &scan, &step.odometry) else { continue };
             judged.add_view(&world, step.pose, &view, self.sensing.visit.range);
         }
         (judged.visits, judged.invented) = compared(&world, &walk, &visits.finish().visits);

@@ -422,7 +422,7 @@ impl<'w> LaserRobot<'w> {
         let Ok(scan) = self.scanner.scan(step.pose, number as u64, step.time) else {
             return Ok(());
         };
-        if let Some(view) = self.visits.see((), &scan, &step.odometry) {
+        if let Some(view) = self.visits.add_frame((), &scan, &step.odometry) {
             self.odometry_from_map = view.odometry_from_map;
             self.is_at_opening = self.is_opening(&view, &scan);
             self.seen.push(view.possible_places);

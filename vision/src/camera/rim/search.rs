@@ -31,14 +31,14 @@ static DIRECTIONS: LazyLock<[Vector2<f64>; BEARINGS]> =
 
 pub(super) fn candidates(image: &Brightness) -> Vec<Circle> {
     let mut factor = image.width.max(image.height).div_ceil(COARSE);
-    let mut slopes = Slopes::of(&image.shrunk(factor));
+    let mut slopes = Slopes::from_image(&image.shrunk(factor));
     let mut circles = slopes.circles();
     for circle in &mut circles {
         *circle = slopes.best_near(*circle);
     }
     while factor > 1 {
         let finer = factor.div_ceil(2);
-        slopes = Slopes::of(&image.shrunk(finer));
+        slopes = Slopes::from_image(&image.shrunk(finer));
         for circle in &mut circles {
             *circle = slopes.best_near(circle.scaled(factor as f64 / finer as f64));
         }
@@ -63,7 +63,7 @@ struct Scored {
 }
 
 impl Slopes {
-    fn of(image: &Brightness) -> Self {
+    fn from_image(image: &Brightness) -> Self {
         let (width, height) = (image.width, image.height);
         let mut falls = vec![[0.0; 2]; width * height];
         for v in 1..height - 1 {
