@@ -76,12 +76,12 @@ pub(crate) fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
 }
 
 /// Stops what it watches at the question with this number, from 1.
-pub(crate) struct QuestionLimit {
+pub(crate) struct StopAt {
     at: u64,
     asked: AtomicU64,
 }
 
-impl QuestionLimit {
+impl StopAt {
     pub(crate) fn new(at: u64) -> Self {
         Self { at, asked: AtomicU64::new(0) }
     }
@@ -91,7 +91,7 @@ impl QuestionLimit {
     }
 }
 
-impl Watch for QuestionLimit {
+impl Watch for StopAt {
     fn stop(&self) -> bool {
         self.asked.fetch_add(1, Ordering::Relaxed) + 1 >= self.at
     }

@@ -11,7 +11,6 @@ use crate::{
     colour::{PixelClass, Stripe, StripeKind},
     geometry::unit,
     ground_view::GroundView,
-    wall::{WallFrame, WallSegment},
 };
 
 /// A stripe is at least this part of its true width. Geometry: one pixel of the image may cover the rest.
@@ -228,12 +227,10 @@ impl Boundary {
     }
 
     /// Makes the edges sure that lie on long walls: what is behind a wall may have the floor's colour.
-    pub(crate) fn confirm(&mut self, walls: &[WallSegment], frame: &WallFrame) {
+    pub(crate) fn confirm(&mut self, is_on_long_wall: impl Fn(Point2<f64>) -> bool) {
         for (bearing, sight) in self.sights.iter_mut().enumerate() {
             for edge in sight.edges.iter_mut().flatten() {
-                let point =
-                    frame.walls_from_robot() * Point2::from(edge.range * direction(bearing));
-                edge.sure |= walls.iter().any(|wall| wall.confirms(point));
+                edge.sure |= is_on_long_wall(Point2::from(edge.range * direction(bearing)));
             }
         }
     }

@@ -167,7 +167,9 @@ pub(crate) fn place_within(mut boundary: Boundary, margin: f64) -> (Place, Sensi
     let frame = WallFrame::fit(&lines);
     let walls = frame.map_or_else(Vec::new, |frame| frame.walls(&lines));
     if let Some(frame) = &frame {
-        boundary.confirm(&walls, frame);
+        let on_wall =
+            |point| walls.iter().any(|wall| wall.confirms(frame.walls_from_robot() * point));
+        boundary.confirm(on_wall);
     }
     let hallway = frame.and_then(|frame| hallway(&walls, &boundary, &frame));
     let mut trace =

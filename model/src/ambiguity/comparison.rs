@@ -295,7 +295,7 @@ impl<'c, 'a> Pairs<'c, 'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{any_graph::QuestionLimit, marker::named};
+    use crate::{any_graph::StopAt, marker::named};
 
     /// A cycle of junctions, to each of which both ends of a long way are joined; these are of one
     /// length, but for that at the last junction.
@@ -376,7 +376,7 @@ mod tests {
         ];
         for is_stopped in searches {
             let questions = |at, ends| {
-                let limit = QuestionLimit::new(at);
+                let limit = StopAt::new(at);
                 assert_eq!(is_stopped(&comparison(), &limit), ends);
                 limit.asked()
             };

@@ -295,7 +295,7 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
 mod tests {
     use super::*;
     use crate::{
-        any_graph::{QuestionLimit, starts},
+        any_graph::{StopAt, starts},
         check::smallest_failure::delegate_to_run,
         enumerate::Class,
         mapping::{Algorithm1Run, InvalidStep, Mapped, MappingChoice, MappingError, ObservedWorld},
@@ -305,7 +305,7 @@ mod tests {
     #[test]
     fn a_search_that_is_stopped_says_so() {
         let cycle = EmbeddedGraph::cycle(5);
-        let stopped = QuestionLimit::new(1);
+        let stopped = StopAt::new(1);
         let ways = every_way(Algorithm1Run::default(), &cycle, Dart(0), 1000, &stopped).unwrap();
         assert_eq!(ways.limit, Some(ChoicesLimit::Interrupted));
     }

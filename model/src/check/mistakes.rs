@@ -376,7 +376,7 @@ impl MistakenRuns {
 mod tests {
     use super::*;
     use crate::{
-        any_graph::QuestionLimit,
+        any_graph::StopAt,
         mapping::{MappingAlgorithm, RecoveryConfig},
     };
 
@@ -413,7 +413,7 @@ mod tests {
     #[test]
     fn a_check_that_is_stopped_begins_no_start() {
         let check = MistakeCheck::new(Class::Multigraph, 5, MappingAlgorithm::Algorithm1.into());
-        let tally = check.unwrap().run(&QuestionLimit::new(1));
+        let tally = check.unwrap().run(&StopAt::new(1));
         assert_eq!(tally, MistakeTally { interrupted: true, ..MistakeTally::default() });
     }
 }
