@@ -354,6 +354,38 @@ fn an_open_laptop_makes_the_outline_of_the_body_irregular() {
 }
 
 #[test]
+fn with_a_dark_rim_less_than_half_of_the_visible_rim_is_brighter_inside_than_outside() {
+    let plan = plan("shape-8");
+    let pose = Pose { position: [0.1, 5.3], heading: 1.3 };
+    let brighter = |dark: f64, seed: u64| {
+        let effects =
+            with(&[("dark-rim", dark), ("holder", 0.0), ("zoom", 1.45), ("off-centre", -0.03)]);
+        let camera = effects.camera(&Camera::superscout()).unwrap();
+        let building = Building::new(&plan, look("tiles"), None, &effects, seed);
+        let picture = render(&Rig::new(&camera), &building, pose, &effects, seed);
+        let light = |radius: f64, angle: f64| {
+            let [u, v] = camera.middle().into();
+            let [u, v] = [u + radius * angle.cos(), v + radius * angle.sin()];
+            let inside = u >= 0.0 && v >= 0.0 && u < 1279.5 && v < 959.5;
+            inside.then(|| {
+                let pixel = picture.get_pixel(u.round() as u32, v.round() as u32).0;
+                pixel.map(u32::from).iter().sum::<u32>()
+            })
+        };
+        let seen: Vec<bool> = (0..720)
+            .filter_map(|step| {
+                let angle = f64::from(step).to_radians() / 2.0;
+                Some(light(645.0, angle)? > light(660.0, angle)?)
+            })
+            .collect();
+        seen.iter().filter(|brighter| **brighter).count() as f64 / seen.len() as f64
+    };
+    let mean = |dark: f64| (0..6).map(|seed| brighter(dark, seed)).sum::<f64>() / 6.0;
+    let [without, with] = [0.0, 0.65].map(mean);
+    assert!(without > 0.95 && (0.2..0.5).contains(&with), "{without} {with}");
+}
+
+#[test]
 fn an_image_follows_from_its_seeds_on_any_thread() {
     let plan = plan("building-12");
     let rig = Rig::new(&small_camera());

@@ -146,14 +146,3 @@ fn an_image_without_a_rim_has_none() {
         }
     }
 }
-
-#[test]
-fn with_a_dark_rim_less_than_half_of_the_visible_rim_is_brighter_inside_than_outside() {
-    let brighter = |dark: f64| {
-        let settings = [&CROPPED[..], &[("holder", 0.0), ("dark-rim", dark)]].concat();
-        let images = (0..6).map(|seed| rendered(seed, [1280, 960], &settings).brighter());
-        images.sum::<f64>() / 6.0
-    };
-    let [without, with] = [0.0, 0.65].map(brighter);
-    assert!(without > 0.9 && (0.15..0.5).contains(&with), "{without} {with}");
-}
