@@ -1,4 +1,4 @@
-//! A robot with a budget turns back in time, and goes to its marker by the way by which it came.
+//! Checks that a robot with a budget turned back in time, and went back to its marker along its own way.
 
 use toposlam_logs::record::RunEnding;
 use toposlam_model::{

@@ -80,7 +80,7 @@ pub enum Exhibit {
         pose: Dart,
         doors: Vec<Door>,
     },
-    /// Anything else: what it is, and what it was.
+    /// Any other value, with its name.
     Value {
         name: &'static str,
         value: String,

@@ -1,4 +1,4 @@
-//! Matches a trace with an algorithm: are the doors those that it takes, or may take? Section 2.3.
+//! Matches a trace with an algorithm: does the algorithm take, or may it take, the doors of the trace? Section 2.3.
 
 use std::borrow::Cow;
 
