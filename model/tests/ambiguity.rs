@@ -8,9 +8,9 @@ use toposlam_model::{
         Unfinished, Walk, replay, state_count,
     },
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Watch},
-    isomorphism::code,
-    marker::{MARKERS, named},
+    enumerate::{Class, Each, Enumeration, Watch},
+    isomorphism::{Bijection, code},
+    marker::{MARKERS, Marker, named},
     percept::{Door, Percept},
     world::{Action, State, World},
 };
@@ -299,5 +299,58 @@ fn the_states_of_a_triangle_are_its_poses_times_the_places_of_the_marker() {
     let [triangle, _] = cycles();
     for (marker, count) in [("undirected", 6), ("directional", 6), ("movable", 6 * (3 + 1))] {
         assert_eq!(state_count(&triangle, named(marker).unwrap()), count);
+    }
+}
+
+/// All placed worlds of a class and its sizes, each by a graph and a facing dart.
+fn placed_worlds(class: Class, edges: usize, marker: &dyn Marker) -> Vec<(EmbeddedGraph, Dart)> {
+    let mut placed: Vec<(EmbeddedGraph, Dart)> = Vec::new();
+    for edges in 1..=edges {
+        for graph in Enumeration::new(Each::World, class, edges).unwrap().graphs() {
+            let automorphisms: Vec<_> = graph
+                .darts()
+                .map(|to| Bijection::of_starts((&graph, Dart(0)), (&graph, to)))
+                .filter(|bijection| bijection.verify(&graph, &graph))
+                .collect();
+            for facing in graph.darts() {
+                // The least of all that an automorphism, or the marker, makes the same.
+                let alike = |bijection: &Bijection| {
+                    marker.first_alike(&graph, bijection.image(facing).unwrap())
+                };
+                if automorphisms.iter().map(alike).min() == Some(facing) {
+                    placed.push((graph.clone(), facing));
+                }
+            }
+        }
+    }
+    placed
+}
+
+/// Each placed world against each, by walks and relations, without quotients.
+#[test]
+fn the_search_finds_what_comparing_all_with_all_finds() {
+    for (class, edges) in [(Class::Multigraph, 3), (Class::Simple, 5), (Class::Planar, 5)] {
+        for marker in MARKERS {
+            let worlds = placed_worlds(class, edges, marker);
+            let mut ambiguous = vec![0; edges];
+            for (place, (one, facing)) in worlds.iter().enumerate() {
+                let is_like = |(other_place, (other, to)): (usize, &(EmbeddedGraph, Dart))| {
+                    let comparison = Comparison::new(marker, (one, *facing), (other, *to));
+                    other_place != place
+                        && marker.starts(other, *to).into_iter().any(|pose| {
+                            let found = comparison.walk([*facing, pose]);
+                            let [here, there] = comparison.starts([*facing, pose]);
+                            assert!(found.iter().all(|walk| walk.verify(&here, &there)));
+                            found.is_none()
+                        })
+                };
+                ambiguous[one.edge_count() - 1] +=
+                    u64::from(worlds.iter().enumerate().any(is_like));
+            }
+            let findings = search(class, edges, marker.name());
+            let placed = |edges| worlds.iter().filter(|(g, _)| g.edge_count() == edges).count();
+            let placed: Vec<_> = (1..=edges).map(|edges| placed(edges) as u64).collect();
+            assert_eq!(counts(&findings), (placed, ambiguous), "{class} {marker:?}");
+        }
     }
 }

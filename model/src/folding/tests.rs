@@ -25,6 +25,91 @@ fn walk_with<M: Marker + Copy>(
     walk(world, turns.iter().copied().map(u32::from))
 }
 
+/// The numbers of vertices and of open darts, by an equivalence of darts that grows until it is closed;
+/// `None` if it contradicts itself. There is one vertex for each percept.
+fn forced_equivalence(percepts: &[Percept], doors: &[Door]) -> Option<(usize, usize)> {
+    let darts: Vec<(usize, u32)> = (0..percepts.len())
+        .flat_map(|visit| (0..percepts[visit].degree).map(move |door| (visit, door)))
+        .collect();
+    let at = |wanted: (usize, u32)| darts.iter().position(|&dart| dart == wanted).unwrap();
+    let clockwise = |dart: usize| {
+        let (visit, door) = darts[dart];
+        at((visit, (door + 1) % percepts[visit].degree))
+    };
+    let marked = |dart: usize| {
+        let (visit, door) = darts[dart];
+        percepts[visit].sighting == Sighting::Pointing(Door(door))
+    };
+    let mut edges: Vec<(usize, usize)> = Vec::new();
+    for (moves, door) in doors.iter().enumerate() {
+        let (left, entered) = (at((moves, door.0)), at((moves + 1, 0)));
+        edges.extend([(left, entered), (entered, left)]);
+    }
+    // The class of each dart: its smallest member.
+    let mut class: Vec<usize> = (0..darts.len()).collect();
+    let merge = |class: &mut Vec<usize>, one: usize, other: usize| {
+        let (low, high) = (class[one].min(class[other]), class[one].max(class[other]));
+        class.iter_mut().filter(|class| **class == high).for_each(|class| *class = low);
+        low != high
+    };
+    let sightings: Vec<usize> = (0..darts.len()).filter(|&dart| marked(dart)).collect();
+    let mut changed = true;
+    while changed {
+        changed = false;
+        for pair in sightings.windows(2) {
+            changed |= merge(&mut class, pair[0], pair[1]);
+        }
+        for one in 0..darts.len() {
+            for other in 0..one {
+                if class[one] == class[other] {
+                    if percepts[darts[one].0].degree != percepts[darts[other].0].degree {
+                        return None;
+                    }
+                    changed |= merge(&mut class, clockwise(one), clockwise(other));
+                }
+            }
+        }
+        for &(one, far) in &edges {
+            for &(other, other_far) in &edges {
+                if class[one] == class[other] {
+                    changed |= merge(&mut class, far, other_far);
+                }
+            }
+        }
+    }
+    let alike = |one: usize, other: usize| class[one] == class[other];
+    let contradicts = (0..darts.len()).any(|one| {
+        (0..one).any(|other| {
+            alike(one, other) && (darts[one].0 == darts[other].0 || marked(one) != marked(other))
+        })
+    });
+    if contradicts || edges.iter().any(|&(one, far)| alike(one, far)) {
+        return None;
+    }
+    let classes = |wanted: &dyn Fn(usize) -> bool| {
+        let mut found: Vec<usize> =
+            (0..darts.len()).filter(|&dart| wanted(dart)).map(|dart| class[dart]).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    };
+    let all = classes(&|_| true);
+    let joined = classes(&|dart| edges.iter().any(|&(one, _)| one == dart));
+    // A vertex has as many classes of darts as darts.
+    let mut vertices: Vec<Vec<usize>> = (0..percepts.len())
+        .map(|visit| {
+            let mut around: Vec<usize> =
+                (0..percepts[visit].degree).map(|door| class[at((visit, door))]).collect();
+            around.sort_unstable();
+            around
+        })
+        .collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    Some((vertices.len(), all.len() - joined.len()))
+}
+
+/// Whether a walk fits a world, with the marker by any facing dart or with none, from any pose.
 /// Whether a walk fits a world, with the marker by any facing dart or with none, from any pose.
 fn explains(
     marker: &dyn Marker,
@@ -210,6 +295,22 @@ fn reported_exactly<M: Marker + Copy>(
 }
 
 proptest! {
+    #[test]
+    fn the_folded_trail_is_the_smallest_equivalence_of_the_darts_that_the_walk_forces(
+        graph in any_graph(Class::Multigraph, 5),
+        turns in prop::collection::vec(any::<u8>(), 0..14),
+        lie in prop::option::of((any::<prop::sample::Index>(), 1_u32..4)),
+    ) {
+        let (mut percepts, doors) = walk_with(Directional, &graph, Dart(0), Dart(0), &turns);
+        if let Some((wrong, degree)) = lie {
+            percepts[wrong.index(turns.len() + 1)] = percept(degree, None);
+        }
+        prop_assume!(doors.iter().zip(&percepts).all(|(door, percept)| door.0 < percept.degree));
+        let folded = fold(&percepts, &doors).ok();
+        let counts = folded.map(|trail| (trail.vertex_count(), trail.open_count()));
+        prop_assert_eq!(counts, forced_equivalence(&percepts, &doors));
+    }
+
     #[test]
     fn the_folded_trail_explains_the_walk_and_is_the_world_if_it_is_complete(walk in long_walk()) {
         explains_the_walk(Directional, &walk)?;

@@ -132,6 +132,10 @@ const ROUNDS: u32 = 200;
 
 /// An image of a junction whose turning point is the given distance ahead, of a robot that then turned.
 fn junction(shape: JunctionShape, ahead: f64, turned: f64) -> Place {
+    Place::Junction(junction_view(shape, ahead, turned))
+}
+
+fn junction_view(shape: JunctionShape, ahead: f64, turned: f64) -> JunctionView {
     let through =
         if ahead == 0.0 { [0.0; 2] } else { [ahead * turned.cos(), -ahead * turned.sin()] };
     let mut doors = Vec::with_capacity(4);
@@ -143,7 +147,7 @@ fn junction(shape: JunctionShape, ahead: f64, turned: f64) -> Place {
         }
         quarter += 1;
     }
-    Place::Junction(JunctionView { doors, turning_point: through, confidence: 1.0 })
+    JunctionView { doors, turning_point: through, confidence: 1.0 }
 }
 
 fn hallway(heading: f64, left: f64, right: f64, status: HallwayStatus) -> Place {
@@ -186,7 +190,7 @@ fn wide_scene(choose: &mut impl Choose) -> Place {
         _ => {
             let shape = JUNCTION_SHAPES[usize::from(choose.below(6))];
             let turned = f64::from(choose.below(8)) / 4.0 * PI;
-            let Place::Junction(mut view) = junction(shape, 0.0, turned) else { unreachable!() };
+            let mut view = junction_view(shape, 0.0, turned);
             let aside = [0.0, 0.02, -0.02, 2.0, -2.0];
             for axis in 0..2 {
                 view.turning_point[axis] = aside[usize::from(choose.below(5))];
