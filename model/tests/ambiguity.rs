@@ -354,3 +354,24 @@ fn the_search_finds_what_comparing_all_with_all_finds() {
         }
     }
 }
+
+/// Every pair that the search finds is a pair, whichever way the robot in the one world begins, and
+/// the worlds are different ones.
+#[test]
+fn every_pair_is_confirmed_by_a_relation_from_every_start() {
+    for marker in MARKERS {
+        for [one, other] in search(Class::Multigraph, 3, marker.name()).pairs() {
+            assert_ne!(one, other);
+            let facing = PlacedWorld::FACING;
+            let comparison = Comparison::new(marker, (&one.graph, facing), (&other.graph, facing));
+            for start in marker.starts(&one.graph, facing) {
+                let relations = marker.starts(&other.graph, facing).into_iter().filter(|&pose| {
+                    let [here, there] = comparison.starts([start, pose]);
+                    let relation = comparison.relation([start, pose]);
+                    relation.is_some_and(|relation| relation.verify(&here, &there))
+                });
+                assert!(relations.count() > 0, "{marker:?}: {one:?} {other:?} {start:?}");
+            }
+        }
+    }
+}

@@ -1,12 +1,14 @@
 //! The exhaustive check holds, and its numbers are pinned.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use toposlam_model::{
     check::{
         Check, ChoicesLimit, DEFAULT_STATE_BUDGET, EveryWay, RunChoices, Shard, Tally,
         check_worlds, every_way,
     },
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::Class,
+    enumerate::{Class, Watch},
     mapping::{Algorithm1Run, MappingAlgorithm, explore},
     world::GraphWorld,
 };
@@ -72,6 +74,25 @@ fn a_start_with_more_states_than_the_budget_is_given_up() {
     assert_eq!((tally.starts, tally.mapped, tally.over_budget), (1, 1, 1));
 }
 
+/// Asked to stop, a check says that it did not finish, and does no more.
+#[test]
+fn an_interrupted_check_says_so() {
+    struct AfterParts(AtomicUsize);
+    impl Watch for AfterParts {
+        fn part_done(&self, _: u64) {
+            self.0.fetch_add(1, Ordering::Relaxed);
+        }
+        fn stop(&self) -> bool {
+            self.0.load(Ordering::Relaxed) > 2
+        }
+    }
+    let check = Check::new(Class::Multigraph, 5, Shard::WHOLE).unwrap();
+    let watch = AfterParts(AtomicUsize::new(0));
+    let tally = MappingAlgorithm::Algorithm1.sweep(&check, RunChoices::Default, &watch);
+    assert!(tally.interrupted && tally.worlds < 870);
+    assert_eq!(tally.mapped, tally.starts);
+}
+
 #[test]
 fn the_default_run_is_among_all_runs() {
     for graph in starts(Class::Multigraph, 4) {
@@ -80,7 +101,22 @@ fn the_default_run_is_among_all_runs() {
 }
 
 #[test]
-fn a_shard_is_one_of_a_number_of_parts() {
+fn the_shards_are_the_whole() {
+    for class in Class::ALL {
+        let of = |shard: &str| {
+            let check = Check::new(class, 6, shard.parse().unwrap()).unwrap();
+            check.run(Algorithm1Run::default, RunChoices::Default, &())
+        };
+        let whole = of("1/1");
+        let mut shares = Tally::default();
+        for shard in ["1/3", "2/3", "3/3"] {
+            let share = of(shard);
+            assert!(share.worlds < whole.worlds);
+            shares.merge(share);
+        }
+        let counts = |tally: &Tally| Tally { worst: None, ..tally.clone() };
+        assert_eq!((counts(&shares), shares.moves_max()), (counts(&whole), whole.moves_max()));
+    }
     for wrong in ["3/2", "0/2", "1", "1/0", "a/b", "-1/2", "+1/2", ""] {
         assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
     }

@@ -2,11 +2,15 @@
 
 use std::{
     borrow::Cow,
-    sync::atomic::{AtomicUsize, Ordering},
+    collections::BTreeMap,
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use toposlam_model::{
-    check::{EnumeratedStart, Shard, SharedPrefixCheck, Tally},
+    check::{EnumeratedStart, FinishedUnits, PartTally, Shard, SharedPrefixCheck, Tally},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Watch},
     mapping::{
@@ -28,9 +32,11 @@ fn counts(tally: Tally) -> Tally {
     Tally { moves_made: 0, ..tally }
 }
 
-/// Without sharing, each start costs all its moves.
 #[test]
-fn the_tree_has_a_leaf_for_each_start_and_half_of_the_moves() {
+fn the_tree_has_a_leaf_for_each_start() {
+    let leaves = |edges| lazy::<Algorithm1Run>(Class::Multigraph, edges).starts;
+    assert_eq!([1, 2, 3, 4, 5, 6].map(leaves), [2, 10, 74, 706, 8162, 110_410]);
+    // Without sharing, each start costs all its moves. How many are shared is pinned.
     let tally = lazy::<Algorithm1Run>(Class::Multigraph, 7);
     assert_eq!(tally.starts, 1_708_394);
     assert_eq!((tally.moves_total, tally.moves_made), (25_375_585, 13_166_198));
@@ -135,6 +141,99 @@ fn an_end_at_which_not_everything_is_revealed_stands_for_all_starts_that_agree()
     let at_once = check.run(|| still(EmbeddedGraph::chain(4)), &());
     assert_eq!((at_once.starts, at_once.mapped, at_once.moves_made), (706, 1, 0));
     assert_eq!(at_once.below_certificate, 1);
+}
+
+fn shard(text: &str) -> SharedPrefixCheck {
+    SharedPrefixCheck::new(Class::Multigraph, 5, text.parse().unwrap()).unwrap()
+}
+
+#[test]
+fn the_shards_are_the_whole() {
+    let whole = shard("1/1").run(Algorithm1Run::default, &());
+    let mut sum = Tally::default();
+    for part in ["1/3", "2/3", "3/3"] {
+        let found = shard(part).run(Algorithm1Run::default, &());
+        assert!(found.starts < 5000 && found.worlds < 500, "{found:?}");
+        sum.merge(found);
+    }
+    let counts = |tally: &Tally| Tally { worst: None, ..tally.clone() };
+    assert_eq!((counts(&sum), sum.moves_max()), (counts(&whole), 36));
+    assert_eq!((sum.starts, sum.worlds, sum.mapped), (8162, 870, 8162));
+    assert_eq!((sum.moves_total, sum.certificate_total), (68_652, 55_411));
+}
+
+/// Stops after some units, and remembers them.
+#[derive(Default)]
+struct SomeUnits {
+    known: BTreeMap<usize, PartTally>,
+    new: Mutex<BTreeMap<usize, PartTally>>,
+    left: AtomicUsize,
+}
+
+impl FinishedUnits for SomeUnits {
+    fn finished(&self, unit: usize) -> Option<PartTally> {
+        self.known.get(&unit).cloned()
+    }
+
+    fn finish(&self, unit: usize, tally: &PartTally) {
+        self.new.lock().unwrap().insert(unit, tally.clone());
+        self.left.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+impl Watch for SomeUnits {
+    fn stop(&self) -> bool {
+        self.left.load(Ordering::Relaxed) == 0
+    }
+}
+
+/// As processes on several machines do them: in any order, and each with pieces of its own.
+#[test]
+fn the_pieces_in_any_order_are_the_whole() {
+    let cases = [
+        (MappingAlgorithm::Algorithm1, Class::Multigraph, 5),
+        (MappingAlgorithm::Folding, Class::Planar, 6),
+        (MappingAlgorithm::MovableMarker, Class::Corridor, 7),
+    ];
+    for (algorithm, class, edges) in cases {
+        let sweep = SharedPrefixCheck::new(class, edges, Shard::WHOLE).unwrap();
+        let machines = [(); 3].map(|()| algorithm.pieces(&sweep, &()));
+        let mut counts = [(); 3].map(|()| PartTally::default());
+        let count = machines[0].count();
+        assert!(count > machines[0].unit_count() && machines[0].unit_count() > 3);
+        for piece in (0..count).rev() {
+            let machine = piece * piece % 3;
+            counts[machine].merge(algorithm.check_piece(&machines[machine], piece, &()));
+        }
+        let [mut all, one, other] = counts;
+        all.merge(one);
+        all.merge(other);
+        let whole = algorithm.lazy_sweep(&sweep, &(), &());
+        assert_eq!(algorithm.finished_pieces(all), whole, "{class}");
+    }
+}
+
+#[test]
+fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
+    let sweep = shard("1/1");
+    let whole = sweep.run(FoldingRun::default, &());
+    let mut known = BTreeMap::new();
+    let mut rounds = 0;
+    loop {
+        let some = SomeUnits { known: known.clone(), left: 200.into(), ..SomeUnits::default() };
+        let found = sweep.resume(FoldingRun::default, &some, &some);
+        let new = some.new.into_inner().unwrap();
+        assert!(new.keys().all(|unit| !known.contains_key(unit)));
+        known.extend(new);
+        rounds += 1;
+        if !found.interrupted {
+            assert_eq!(found, whole);
+            break;
+        }
+        assert!(rounds < 100);
+    }
+    assert!(rounds > 1);
+    assert_eq!(known.len(), MappingAlgorithm::Folding.pieces(&sweep, &()).unit_count());
 }
 
 /// Stops when it has been asked this number of times.

@@ -381,6 +381,43 @@ mod tests {
         draft
     }
 
+    /// The darts of a face that are free, along its border.
+    fn free_along_the_border(draft: &Draft, dart: usize) -> u64 {
+        let mut found = 0;
+        let mut at = dart;
+        loop {
+            if draft.opposite[at] == FREE {
+                found |= 1 << at;
+            } else {
+                at = draft.opposite[at] as usize;
+            }
+            at = draft.clockwise(at);
+            if at == dart {
+                return found;
+            }
+        }
+    }
+
+    /// In every planar draft on the way to 6 edges.
+    #[test]
+    fn the_free_darts_of_a_face_are_those_along_its_border() {
+        for left in 0..=3 {
+            let mut seen = 0;
+            let mut compare = |draft: &Draft| {
+                for dart in bits(draft.free) {
+                    let along = free_along_the_border(draft, dart);
+                    assert_eq!(draft.free_in_face(dart), along);
+                    let last = draft.last_in_face[dart] as usize;
+                    assert_eq!(draft.next_in_face[last] as usize, dart);
+                    seen += 1;
+                }
+                ControlFlow::Continue(())
+            };
+            let _ = Draft::empty(Each::Start, Class::Planar, 6).grow_to(6 - left, &mut compare);
+            assert_eq!(seen > 100, left > 0);
+        }
+    }
+
     #[test]
     fn a_word_encodes_the_degree_of_a_new_vertex_and_is_no_dart() {
         for degree in 1..=DARTS as u8 {

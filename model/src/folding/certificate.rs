@@ -151,12 +151,62 @@ pub fn certificate(graph: &EmbeddedGraph, facing: Dart) -> Vec<Door> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
+
     use super::*;
     use crate::{
         any_graph::{Class, starts, walk},
-        folding::fold,
-        world::GraphWorld,
+        folding::{FoldedTrail, fold},
+        world::{GraphWorld, World},
     };
+
+    /// The moves of a shortest walk whose folded trail is complete, by trying all walks.
+    fn shortest_by_trying_all(graph: &EmbeddedGraph, facing: Dart) -> usize {
+        let world = GraphWorld::new(graph, facing);
+        let trail = FoldedTrail::new(world.sensed()).unwrap();
+        let mut seen = HashSet::from([trail.seen_from_robot()]);
+        let mut level = vec![(world, trail)];
+        let mut moves = 0;
+        while !level.iter().any(|(_, trail)| trail.is_complete()) {
+            moves += 1;
+            let mut later = Vec::new();
+            for (world, trail) in &level {
+                for door in 0..world.sensed().degree {
+                    let (mut world, mut trail) = (world.clone(), trail.clone());
+                    world.traverse(Door(door)).unwrap();
+                    trail.step(Door(door), world.sensed()).unwrap();
+                    if seen.insert(trail.seen_from_robot()) {
+                        later.push((world, trail));
+                    }
+                }
+            }
+            level = later;
+        }
+        moves
+    }
+
+    #[test]
+    fn a_cycle_a_chain_and_a_star_have_the_lengths_of_the_formula() {
+        for count in 3..9 {
+            assert_eq!(certificate_length(&EmbeddedGraph::cycle(count), Dart(0)), count);
+        }
+        assert_eq!(certificate_length(&EmbeddedGraph::chain(3), Dart(0)), 3);
+        let leaves = ["a", "b", "c", "d", "e"];
+        let lists = leaves.map(|leaf| (leaf, vec!["hub"]));
+        let star = [&[("hub", leaves.to_vec())], &lists[..]].concat();
+        let star = EmbeddedGraph::from_neighbour_lists(&star).unwrap();
+        assert_eq!(certificate_length(&star, Dart(0)), 9);
+    }
+
+    #[test]
+    fn no_shorter_walk_determines_its_world() {
+        for (class, most) in [(Class::Multigraph, 3), (Class::Simple, 5)] {
+            for graph in (1..=most).flat_map(|edges| starts(class, edges)) {
+                let least = shortest_by_trying_all(&graph, Dart(0));
+                assert_eq!(certificate_length(&graph, Dart(0)), least, "{graph:?}");
+            }
+        }
+    }
 
     #[test]
     fn every_certificate_has_the_length_of_the_formula_and_determines_its_world() {

@@ -358,6 +358,30 @@ mod tests {
 
     proptest! {
         #[test]
+        fn discovery_renumbers_the_graph_and_changes_nothing_else(
+            graph in any_graph(Class::Multigraph, 12), start in any::<u32>()
+        ) {
+            let start = Dart(start % graph.dart_count() as u32);
+            let world = NamedWorld::discovered("", "", &graph, start);
+            prop_assert_eq!(world.edge_names.is_none(), graph.is_simple());
+            // The renumbering is the one that carries the start along all walks.
+            let mut image = vec![None; graph.dart_count()];
+            let mut open = vec![(start, Dart(0))];
+            while let Some((here, there)) = open.pop() {
+                match image[here.at()].replace(there) {
+                    None => {
+                        open.push((graph.clockwise(here), world.graph.clockwise(there)));
+                        open.push((graph.opposite(here), world.graph.opposite(there)));
+                    }
+                    Some(earlier) => prop_assert_eq!(earlier, there),
+                }
+            }
+            // Numbering it again changes nothing.
+            let again = NamedWorld::discovered("", "", &world.graph, Dart(0));
+            prop_assert_eq!(again, world);
+        }
+
+        #[test]
         fn the_text_of_a_start_gives_it_back(graph in any_graph(Class::Multigraph, 12)) {
             let world = NamedWorld::numbered("", "", graph, None);
             for dart in world.graph.darts() {

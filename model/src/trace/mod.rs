@@ -231,6 +231,14 @@ pub(crate) mod tests {
         world::{GraphWorld, RefusedAction},
     };
 
+    impl Trace {
+        /// The same walk of a robot that sees no marker.
+        pub(crate) fn without_marker(mut self) -> Self {
+            self.percepts.iter_mut().for_each(|percept| percept.sighting = Sighting::Nothing);
+            self
+        }
+    }
+
     /// What a robot perceives on a walk.
     pub(crate) fn recorded<M: Marker>(
         world: GraphWorld<'_, M>,

@@ -1,4 +1,4 @@
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use super::{
     PathState::{Hallway, Junction, Leaving, Unknown},
@@ -267,6 +267,29 @@ fn a_door_straight_ahead_takes_no_turn() {
 }
 
 #[test]
+fn after_a_turn_an_image_must_show_the_doors_turned_before_it_leaves() {
+    let left = FRAC_PI_2;
+    // A junction that is not turned, or has another shape, or is none, is ignored.
+    for other in [
+        junction(T_STEM, 0.0, 0.0),
+        junction(L_LEFT, 0.0, left),
+        hallway(0.0),
+        hallway(FRAC_PI_2),
+        unknown(),
+    ] {
+        let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
+        robot.sees(&junction(T_STEM, 0.0, 0.0));
+        robot.goes(&other, FRAC_PI_6 / 3.0, 0.0, Unknown);
+        let now = robot.odometry.heading;
+        assert_near(robot.sees(&junction(T_STEM, 0.0, now)).forward, 0.5);
+    }
+    // Turned too little, it turns on.
+    let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
+    robot.sees_and_does(0.6, &junction(T_STEM, 0.0, 0.0));
+    robot.goes(&junction(T_STEM, 0.0, 0.6 * left), 0.4 * left, 0.0, Junction);
+}
+
+#[test]
 fn the_entry_door_is_carried_by_odometry_while_the_robot_turns() {
     let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
     robot.sees(&junction(T_STEM, 0.0, 0.0));
@@ -344,6 +367,26 @@ fn arrival_takes_a_hallway_in_between_or_a_metre_and_20() {
 }
 
 #[test]
+fn the_junction_just_left_is_no_arrival() {
+    // Though a hallway was seen.
+    let mut robot = Robot::in_hallway(NEXT);
+    robot.sees(&junction(T_LEFT, -1.0, 0.0));
+    assert_eq!(robot.path.state(), Leaving);
+    // Nor if one image has shown a junction ahead where there is none.
+    let mut robot = Robot::in_hallway(NEXT);
+    robot.sees(&junction(L_LEFT, 0.05, 0.0));
+    for _ in 0..4 {
+        let way = robot.odometry.position[0];
+        robot.goes(&junction(T_LEFT, -way, 0.0), 0.0, UNIT / 2.0, Leaving);
+    }
+    // Nor if the robot could not leave it, and an image is mistaken for one of a hallway.
+    let mut robot = Robot::at(T_LEFT, NEXT);
+    robot.sees_and_does(0.0, &junction(T_LEFT, 0.0, 0.0));
+    robot.sees_and_does(0.0, &hallway(0.0));
+    robot.goes(&junction(T_LEFT, 0.0, 0.0), 0.0, UNIT / 2.0, Leaving);
+}
+
+#[test]
 fn a_junction_that_was_passed_is_not_the_one_just_left() {
     let mut robot = Robot::in_hallway(NEXT);
     for _ in 0..4 {
@@ -351,6 +394,46 @@ fn a_junction_that_was_passed_is_not_the_one_just_left() {
     }
     // It is the next one, 3.3 m after the last, and the robot is 3 m after it: another image.
     robot.goes(&junction(L_LEFT, -0.3, 0.0), 0.0, 0.0, Junction);
+}
+
+#[test]
+fn a_junction_is_decided_by_two_images() {
+    let here = junction(T_STEM, 0.0, 0.0);
+    let mut robot = Robot::in_hallway(NEXT);
+    assert_eq!(robot.sees(&here), Command::default(), "another image from the same place");
+    assert_eq!(robot.arrives(&here).shape, JunctionShape([true, true, false, true]));
+
+    let mut robot = Robot::in_hallway(&[Door(2), Door(1)]);
+    assert_eq!(robot.sees(&here), Command::default());
+    assert_eq!(robot.path.queue(), [Door(1)], "no door is taken at one that is not decided");
+    assert_near(robot.sees(&here).turn, FRAC_PI_2);
+    assert_eq!(robot.path.queue(), []);
+
+    // After the last one was left, it takes two again.
+    let mut robot = Robot::come_to(T_RIGHT, &[Door(2), Door(1)]);
+    robot.sees(&junction(T_RIGHT, 0.0, 0.0));
+    robot.sees(&hallway(0.0));
+    assert_eq!(robot.sees(&junction(T_RIGHT, 0.0, 0.0)), Command::default());
+    robot.arrives(&junction(T_RIGHT, 0.0, 0.0));
+}
+
+#[test]
+fn doors_are_not_counted_in_an_image_of_another_junction() {
+    let mut robot = Robot::come_to(L_RIGHT, &[Door(2), Door(1)]);
+    // Door 1 would be straight ahead.
+    assert_eq!(robot.sees(&junction(T_RIGHT, 0.0, 0.0)), Command::default());
+    assert_eq!(robot.path.queue(), [Door(1)]);
+    assert_near(robot.sees(&junction(L_RIGHT, 0.0, 0.0)).turn, -FRAC_PI_2);
+
+    // A junction that is known is not decided again.
+    let mut robot = Robot::at(L_LEFT, &[Door(1)]);
+    for _ in 0..3 {
+        robot.sees(&junction(T_LEFT, 0.0, robot.odometry.heading));
+        assert_eq!(robot.path.state(), Unknown);
+    }
+    assert_eq!(robot.path.queue(), [Door(1)]);
+    assert_near(robot.sees(&junction(L_LEFT, 0.0, robot.odometry.heading)).forward, 0.0);
+    assert_eq!(robot.path.queue(), []);
 }
 
 #[test]
@@ -457,6 +540,23 @@ fn only_what_happens_in_a_row_is_counted() {
         robot.sees_and_does(share, &hallway(0.0));
     }
     assert_near(robot.sees(&hallway(0.0)).forward, 0.5);
+}
+
+#[test]
+fn commands_are_neither_too_little_nor_too_large() {
+    assert_near(Robot::leaving(NEXT).sees(&hallway(0.034)).turn, 0.0);
+    assert_near(Robot::leaving(NEXT).sees(&hallway(0.036)).turn, 0.036);
+    let around = Command { turn: 4.0, forward: 0.0 };
+    for (asked, done) in [
+        (ahead(0.029), Command::default()),
+        (ahead(0.031), ahead(0.031)),
+        (ahead(0.6), ahead(0.5)),
+        (around, Command { turn: wrapped(4.0), ..around }),
+        (Command { turn: -PI, ..around }, Command { turn: PI, ..around }),
+    ] {
+        let mut reckoning = PathExecution::at_start(&Odometry::default()).reckoning;
+        assert_eq!(reckoning.end(asked), done);
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-use proptest::prelude::*;
+use proptest::{collection::vec, prelude::*};
 
 use super::*;
 use crate::{
@@ -209,6 +209,20 @@ fn each_fault_has_its_byte() {
 
 proptest! {
     #[test]
+    fn edge_code_is_read_as_it_was_written(
+        worlds in vec(any_graph(Class::Multigraph, 200), 1..4)
+    ) {
+        let bytes = write(&worlds, PlantriCode::Edge).unwrap();
+        prop_assert_eq!(all(&bytes).unwrap(), worlds);
+    }
+
+    #[test]
+    fn planar_code_is_read_as_it_was_written(worlds in vec(any_graph(Class::Simple, 400), 1..4)) {
+        let bytes = write(&worlds, PlantriCode::Planar).unwrap();
+        prop_assert_eq!(all(&bytes).unwrap(), worlds);
+    }
+
+    #[test]
     fn a_truncated_file_is_an_error(
         graph in any_graph(Class::Simple, 20), cut in 1_usize..100, code in 0..2_usize
     ) {
@@ -216,5 +230,16 @@ proptest! {
         let bytes = write(&[graph], code).unwrap();
         let cut = cut % (bytes.len() - 1) + 1;
         prop_assert!(all(&bytes[..bytes.len() - cut]).is_err());
+    }
+
+    #[test]
+    fn no_bytes_make_the_reader_panic(
+        header in 0..5_usize, body in vec(prop_oneof![0..6_u8, any::<u8>()], 0..80)
+    ) {
+        let headers = ["", ">>planar_code<<", ">>planar_code le<<", ">>planar_code be<<", ">>edge_code<<"];
+        let bytes = [headers[header].as_bytes(), &body].concat();
+        for graph in read(&bytes).flatten() {
+            prop_assert!(graph.edge_count() > 0);
+        }
     }
 }

@@ -29,41 +29,36 @@ fn chosen(graph: &EmbeddedGraph, numbers: &[u8]) -> Trace {
 
 #[test]
 fn a_door_that_no_choice_takes_departs_with_the_allowed_doors() {
+    let graph = lollipop();
     // At the fork the robot goes back where it came from, while nothing is left there.
-    let trace = walked(&lollipop(), Dart(0), &[Door(0), Door(0)]);
-    for (algorithm, expected) in [
-        (
-            Algorithm1,
-            &[
-                "door 1 (line 5: explores the unexplored dart 1 of vertex v1)",
-                "door 2 (line 5: explores the unexplored dart 2 of vertex v1)",
-            ][..],
-        ),
-        (Folding, &["door 1 (explores the open dart 1 of vertex v1)"]),
-    ] {
-        let followed = match_algorithm(algorithm, &trace, TraceClaim::Whole, 100);
-        let MatchEnd::Departure(departure) = followed.reached else { panic!("{followed:?}") };
-        let allowed: Vec<_> = departure.allowed.iter().map(ToString::to_string).collect();
-        assert_eq!(departure.event.id, 3);
-        assert_eq!(allowed, expected);
-        assert_eq!(followed.choices, MatchedChoices::Default);
-    }
+    let trace = walked(&graph, Dart(0), &[Door(0), Door(0)]);
+    let followed = match_algorithm(Algorithm1, &trace, TraceClaim::Whole, 100);
+    let MatchEnd::Departure(departure) = followed.reached else { panic!("{followed:?}") };
+    let allowed: Vec<_> = departure.allowed.iter().map(ToString::to_string).collect();
+    assert_eq!(departure.event.id, 3);
+    assert_eq!(
+        allowed,
+        [
+            "door 1 (line 5: explores the unexplored dart 1 of vertex v1)",
+            "door 2 (line 5: explores the unexplored dart 2 of vertex v1)",
+        ]
+    );
+    assert_eq!(followed.choices, MatchedChoices::Default);
 }
 
 #[test]
 fn a_robot_that_goes_on_when_all_is_known_departs() {
     let graph = lollipop();
-    for (algorithm, purpose) in
-        [(Algorithm1, StepPurpose::Done), (Folding, StepPurpose::NoOpenDart)]
-    {
-        let mut doors = explored_by(algorithm, &graph, Dart(0)).doors().to_vec();
-        doors.push(Door(0));
-        let trace = walked(&graph, Dart(0), &doors);
-        let followed = match_algorithm(algorithm, &trace, TraceClaim::Whole, 100);
-        let allowed = vec![AllowedStep { door: None, purpose }];
-        let departure = Departure { algorithm, event: trace.door_event(doors.len() - 1), allowed };
-        assert_eq!(followed.reached, MatchEnd::Departure(departure));
-    }
+    let mut doors = explored(&graph, Dart(0)).doors().to_vec();
+    let moves = doors.len();
+    doors.push(Door(0));
+    let trace = walked(&graph, Dart(0), &doors);
+    let followed = match_algorithm(Algorithm1, &trace, TraceClaim::Whole, 100);
+    let done = AllowedStep { door: None, purpose: StepPurpose::Done };
+    let departure =
+        Departure { algorithm: Algorithm1, event: trace.event(2 * moves + 1), allowed: vec![done] };
+    assert_eq!(followed.reached, MatchEnd::Departure(departure));
+    assert!(followed.run.map().complete().is_some());
 }
 
 #[test]
@@ -296,4 +291,32 @@ proptest! {
             prop_assert!(algorithm == Algorithm1 || departure.allowed.len() == 1);
         }
     }
+}
+
+#[test]
+fn the_folding_explorer_departs_with_its_purpose() {
+    let graph = lollipop();
+    let trace = explored_by(Folding, &graph, Dart(0));
+    let mut wrong = trace.clone();
+    wrong.doors[1] = Door(0);
+    let followed = match_algorithm(Folding, &wrong, TraceClaim::Part, 100);
+    let MatchEnd::Departure(departure) = followed.reached else { panic!() };
+    assert_eq!(departure.event.id, 3);
+    let allowed: Vec<_> = departure.allowed.iter().map(ToString::to_string).collect();
+    assert_eq!(allowed, ["door 1 (explores the open dart 1 of vertex v1)"]);
+    // At its end it has nothing left to do.
+    let mut doors = trace.doors().to_vec();
+    doors.push(Door(0));
+    let longer = walked(&graph, Dart(0), &doors);
+    let followed = match_algorithm(Folding, &longer, TraceClaim::Part, 100);
+    let MatchEnd::Departure(departure) = followed.reached else { panic!() };
+    assert_eq!(departure.event.id, 2 * doors.len() - 1);
+    assert_eq!(departure.allowed[0].purpose, StepPurpose::NoOpenDart);
+    // The start of another degree than the marker shows later is a contradiction.
+    let mut contradicted = trace;
+    let last = contradicted.percepts.len() - 1;
+    contradicted.percepts[0].degree = 2;
+    assert_ne!(contradicted.percepts[last].sighting, Sighting::Nothing);
+    let followed = match_algorithm(Folding, &contradicted, TraceClaim::Part, 100);
+    assert!(matches!(followed.reached, MatchEnd::Departure(_)));
 }
