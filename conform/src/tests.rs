@@ -512,7 +512,34 @@ fn a_wrong_percept_is_a_fault_of_perception_and_a_wrong_door_one_of_motion() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn good_logs_of_random_plans_conform(seed in 0_u64..1000) {
+        if let Some(place) = random_place(seed, 12) {
+            let log = log(&place, seed);
+            prop_assert_eq!(judged(&log.recorded(), &at_place(&place)).divergence, None);
+            prop_assert_eq!(bare(&log.inferred()), bare(&log.recorded().events));
+        }
+    }
+}
+
+proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn a_mutation_of_a_run_in_a_random_plan_is_found(
+        seed in 0_u64..1000,
+        event in any::<prop::sample::Index>(),
+        mutation in prop::sample::select(MUTATIONS.to_vec()),
+        by in 0_u32..3,
+    ) {
+        if let Some(place) = random_place(seed, 8) {
+            let good = log(&place, seed);
+            let event = event.index(good.places().len());
+            assert_mutation_is_found(&good, &at_place(&place), event, (mutation, by));
+        }
+    }
 
     #[test]
     fn a_shorter_log_diverges_in_the_same_way(

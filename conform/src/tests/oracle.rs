@@ -2,12 +2,21 @@
 //! the witness. It is slow and simple: the ends of all vertices of the trail are labelled, and labels are
 //! made equal until nothing changes.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    ops::ControlFlow,
+};
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+    mapping::{
+        Algorithm1Run, Explorer, MapWalk, MappingAlgorithm, MappingError, MappingEvent, Observed,
+        explore_with,
+    },
     percept::{Door, Percept, Sighting},
     trace::{Trace, TraceEventKind},
+    world::{GraphWorld, World},
 };
 
 /// A world with a robot in it.
@@ -54,6 +63,21 @@ impl Position<'_> {
 fn is_undirected(trace: &Trace) -> bool {
     let lies = |percept: &Percept| matches!(percept.sighting, Sighting::Lying(_));
     trace.percepts().iter().any(lies)
+}
+
+/// Whether a world with at most this many edges explains a trace, from any start, with the marker along any
+/// dart or without one.
+pub(super) fn is_explained_by_small(trace: &Trace, edges: usize) -> bool {
+    (1..=edges).any(|edges| {
+        let mut visit = |found: EnumeratedGraph| {
+            let graph = found.graph;
+            let mut markers = graph.darts().map(Some).chain([None]);
+            let explains = |marker| Position { graph, marker, pose: Dart(0) }.explains(trace);
+            if markers.any(explains) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let all = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
+        all.for_each(&mut visit).is_break()
+    })
 }
 
 /// A world, a dart of its marker and the robot's pose at the start.
@@ -205,4 +229,106 @@ fn world(clockwise: &[[usize; 2]], links: &[[usize; 2]]) -> (EmbeddedGraph, BTre
     let (graph, darts) = EmbeddedGraph::from_permutations(&opposite, &turn).unwrap();
     let number = number.into_iter().map(|(label, dart)| (label, darts[dart])).collect();
     (graph, number)
+}
+
+/// A robot that takes only the doors of a trace.
+struct DoorsOf<'t, 'g> {
+    world: GraphWorld<'g>,
+    doors: &'t [Door],
+}
+
+/// Why it goes no further: all doors were taken, or another door would be taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum DoorsEnd {
+    All,
+    Other,
+}
+
+impl World for DoorsOf<'_, '_> {
+    type Error = DoorsEnd;
+
+    fn percept(&mut self) -> Result<Percept, DoorsEnd> {
+        Ok(self.world.sensed())
+    }
+
+    fn traverse(&mut self, door: Door) -> Result<(), DoorsEnd> {
+        let Some((first, rest)) = self.doors.split_first() else { return Err(DoorsEnd::All) };
+        if *first != door {
+            return Err(DoorsEnd::Other);
+        }
+        self.doors = rest;
+        if rest.is_empty() {
+            return Err(DoorsEnd::All);
+        }
+        self.world.traverse(door).map_err(|_| DoorsEnd::Other)
+    }
+}
+
+/// The choices of one run of Algorithm 1: for each, its index and the number of those that are open.
+#[derive(Default)]
+struct Script {
+    choices: Vec<[usize; 2]>,
+    made: usize,
+}
+
+impl Script {
+    fn choose(&mut self, open: usize) -> usize {
+        if self.made == self.choices.len() {
+            self.choices.push([0, open]);
+        }
+        self.made += 1;
+        self.choices[self.made - 1][0]
+    }
+
+    /// The choices of the next run; `false` if there is none.
+    fn advance(&mut self) -> bool {
+        self.choices.truncate(self.made);
+        self.made = 0;
+        while let Some([chosen, open]) = self.choices.pop() {
+            if chosen + 1 < open {
+                self.choices.push([chosen + 1, open]);
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// The number of runs of Algorithm 1 that are tried.
+const RUNS: usize = 1000;
+
+/// Whether some run of an algorithm takes all doors of a trace whose last event is a door: run after run in a world
+/// that explains the percepts. `None` if there are too many runs.
+pub(super) fn takes_doors(algorithm: MappingAlgorithm, trace: &Trace) -> Option<bool> {
+    let before = trace.up_to(2 * trace.percepts().len() - 2);
+    let (graph, marker, pose) = witness(&before).ok()??;
+    // A run begins with the marker along the entry door.
+    if marker != Some(pose) {
+        return Some(false);
+    }
+    let mut script = Script::default();
+    for _ in 0..RUNS {
+        let mut world = DoorsOf { world: GraphWorld::new(&graph, pose), doors: trace.doors() };
+        let mut nobody = |_: &mut DoorsOf, _: &MapWalk, _: MappingEvent| {};
+        let end = match algorithm {
+            MappingAlgorithm::Algorithm1 => {
+                let mut exploration = Algorithm1Run::new(usize::MAX);
+                explore_with(&mut exploration, &mut Observed::new(&mut world, &mut nobody), |run| {
+                    let open = run.choices()?;
+                    if open.is_empty() {
+                        return Ok(None);
+                    }
+                    Ok(open.get(script.choose(open.len())).copied())
+                })
+            }
+            _ => algorithm.map_world(&mut world, usize::MAX, &mut nobody).1,
+        };
+        if matches!(end, Err(MappingError::World(DoorsEnd::All))) {
+            return Some(true);
+        }
+        if algorithm == MappingAlgorithm::Folding || !script.advance() {
+            return Some(false);
+        }
+    }
+    None
 }

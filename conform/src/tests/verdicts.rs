@@ -2,6 +2,8 @@
 //! conforms only if another walk explains it, and a log diverges only at an event that cannot be explained.
 
 use toposlam_model::{
+    embedded_graph::EmbeddedGraph,
+    enumerate::{Each, Enumeration},
     folding::{SearchLimit, SmallestWorld},
     format::world_file,
     mapping::{MapWalk, MappingEvent},
@@ -11,7 +13,7 @@ use toposlam_model::{
 use toposlam_vision::visits::APPROACH_RANGE;
 
 use super::{
-    oracle::{Position, witness},
+    oracle::{Position, is_explained_by_small, takes_doors, witness},
     recovery::recovering,
     *,
 };
@@ -189,6 +191,7 @@ fn assert_impossible(trace: &Trace, event: usize) {
     }
     let cut = trace.up_to(event);
     assert!(!matches!(witness(&cut), Ok(Some(_))), "event {event} is possible");
+    assert!(!is_explained_by_small(&cut, 3), "event {event} is possible");
 }
 
 /// Checks that each world that explains the trace up to an event has a loop or parallel edges, and that this
@@ -296,8 +299,13 @@ proptest! {
                     }
                     // A percept that contradicts others does so in every world.
                     TraceEventKind::Percept(_) => prop_assert_eq!(witness(&cut).unwrap(), None),
-                    // The tests of the model compare doors with all runs.
-                    TraceEventKind::Door(_) => {}
+                    TraceEventKind::Door(_) => {
+                        if let RunDriver::Method(MappingMethod::By { algorithm, audits: 0 }) =
+                            config.driver
+                        {
+                            prop_assert_ne!(takes_doors(algorithm, &cut), Some(true));
+                        }
+                    }
                 }
             }
             None if judgement.verdict() == ConformVerdict::Conforms => {
@@ -323,6 +331,51 @@ proptest! {
                 prop_assert!(holds, "{:?} conforms: {}", mutation, why);
             }
             Some(_) | None => {}
+        }
+    }
+
+    #[test]
+    fn the_first_impossible_event_is_exact(
+        edges in 1_usize..4,
+        start in any::<prop::sample::Index>(),
+        walk in prop::collection::vec(0_u32..4, 0..9),
+        changed in any::<prop::sample::Index>(),
+        change in 0_u32..9,
+    ) {
+        let starts: Vec<EmbeddedGraph> =
+            Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap().graphs();
+        let mut world = GraphWorld::new(start.get(&starts), Dart(0));
+        let mut kinds = vec![TraceEventKind::Percept(world.sensed())];
+        for step in walk {
+            let door = Door(step % world.sensed().degree);
+            world.traverse(door).unwrap();
+            kinds.extend([TraceEventKind::Door(door), TraceEventKind::Percept(world.sensed())]);
+        }
+        let impossible = |kinds: &[TraceEventKind]| {
+            let trace = Trace::new(kinds.to_vec()).unwrap();
+            let folded = FoldedTrace::new(&trace, &Directional, Class::Multigraph);
+            (folded.impossible, trace)
+        };
+        prop_assert_eq!(impossible(&kinds).0, None);
+        let at = changed.index(kinds.len());
+        match &mut kinds[at] {
+            TraceEventKind::Percept(percept) if change < 3 => percept.degree = change + 1,
+            TraceEventKind::Percept(percept) => {
+                percept.sighting = match change {
+                    3 => Sighting::Nothing,
+                    door => Sighting::Pointing(Door(door - 4)),
+                };
+            }
+            TraceEventKind::Door(door) => door.0 = change % 5,
+        }
+        if let (Some((event, _)), trace) = impossible(&kinds) {
+            prop_assert!(event >= at);
+            assert_impossible(&trace, event);
+        } else {
+            let trace = Trace::new(kinds).unwrap();
+            let (graph, marker, pose) = witness(&trace).unwrap().expect("a world explains it");
+            let position = Position { graph: &graph, marker, pose };
+            prop_assert!(position.explains(&trace));
         }
     }
 }
