@@ -17,6 +17,7 @@ use crate::{
 /// run here write what these read. The last of them draws each step of sensing as docs/sensing.md shows
 /// it: look at the pictures that changed, and commit them.
 #[test]
+#[ignore = "it takes long: `.ci/run`"]
 fn the_documents_show_what_the_commands_print() {
     let folder = output::folder("docs");
     fs::create_dir_all(folder.join("worlds/laser")).unwrap();

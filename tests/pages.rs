@@ -34,6 +34,7 @@ fn open(script: &str, name: &str, commands: &[(&str, &str)]) {
 /// Figure 1: a random walk in its two worlds shows the same percepts in both as long as the marker does not point.
 /// With a directional marker a walk distinguishes them.
 #[test]
+#[ignore = "it takes long: `.ci/run`"]
 fn the_percepts_of_figure_1_are_equal_until_the_marker_points() {
     let kinds = [
         "undirected",
@@ -52,6 +53,7 @@ fn the_percepts_of_figure_1_are_equal_until_the_marker_points() {
 }
 
 #[test]
+#[ignore = "it takes long: `.ci/run`"]
 fn the_page_of_a_run_follows_it_to_its_end() {
     let by_scene = "worlds/shape-6.toml --seed 3 --by-scene --html";
     open(
@@ -70,6 +72,7 @@ fn the_page_of_a_run_follows_it_to_its_end() {
 }
 
 #[test]
+#[ignore = "it takes long: `.ci/run`"]
 fn the_page_of_a_report_opens_and_leads_to_its_events() {
     let folder = output::folder("conform-logs");
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
@@ -108,6 +111,7 @@ const LOOPS: &str = "[doors]\ns = [\"e\"]\na = [\"e\", \"l\", \"l\", \"m\", \"m\
                      [start]\nat = \"s\"\nfacing = \"e\"\n";
 
 #[test]
+#[ignore = "it takes long: `.ci/run`"]
 fn a_game_with_true_claims_is_won_and_other_maps_are_judged() {
     let loops = output::folder("game-worlds").join("loops.toml");
     fs::write(&loops, LOOPS).unwrap();

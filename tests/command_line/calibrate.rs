@@ -104,7 +104,7 @@ fn the_rim_is_found_within_a_pixel_and_the_mask_hides_the_robot() {
         assert!(robot > 3000 && f64::from(hidden) > 0.99 * f64::from(robot), "{hidden}/{robot}");
         assert!(floor > 50_000 && f64::from(lost) < 0.06 * f64::from(floor), "{lost}/{floor}");
         // One image is enough for the rim.
-        for number in 0..POSES.len() {
+        for number in [0, POSES.len() - 1] {
             scratch.out(&format!("camera calibrate {number}.jpg --out one.toml"), 0);
             close(&mirror(&read(&scratch.path("one.toml"))), &truth());
         }

@@ -120,6 +120,7 @@ fn stdout_of<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> String 
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn the_lines_of_each_command_fit_its_schema() {
     let written = folder("schema");
     let part = |command: &str| command.split(' ').next().unwrap().to_owned();
@@ -149,6 +150,7 @@ fn the_lines_of_each_command_fit_its_schema() {
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn texts_are_at_most_80_columns_wide_and_have_the_expected_parts() {
     let folder = folder("texts");
     let plain = folder.join("plain.toml");
@@ -209,6 +211,7 @@ fn an_option_without_effect_is_an_error() {
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn results_are_the_same_on_any_number_of_threads() {
     /// The rates of a report, each by what it is of and what it counts, with its number of cases.
     type Cases = &'static [(&'static str, &'static str, u64)];

@@ -33,6 +33,7 @@ fn whole_runs_are_right_with_the_folding_explorer_in_fewer_moves() {
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn runs_by_image_are_right_with_both_algorithms() {
     for algorithm in ["algorithm1", "folding"] {
         let words =
