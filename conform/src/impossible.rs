@@ -27,6 +27,8 @@ pub enum Impossibility {
     NotSimple { class: Class },
     #[error("the marker lies at one junction, and was seen at another one")]
     OnePlace,
+    #[error("every hallway was followed to its other end, and the marker was not seen")]
+    NoPlaceForMarker,
     /// All worlds with these percepts are outside of the class.
     #[error("no world of class {class} explains it")]
     Class { class: Class },
@@ -96,6 +98,12 @@ impl FoldedTrace {
             let event =
                 first_percept(trace, before.moves(), |trail: &FoldedTrail| !trail.is_simple());
             impossible = Some((event, Impossibility::NotSimple { class }));
+            trail = folded_before(trace, event);
+        }
+        if let Some(before) = trail.as_ref().filter(|it| !is_unmarked && !it.may_hold_marker()) {
+            let holds = |trail: &FoldedTrail| !trail.may_hold_marker();
+            let event = first_percept(trace, before.moves(), holds);
+            impossible = Some((event, Impossibility::NoPlaceForMarker));
             trail = folded_before(trace, event);
         }
         Self { trail, impossible }

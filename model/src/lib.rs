@@ -18,7 +18,8 @@
 //! * [`measurement`]: lengths and turns of hallways by odometry, which contradict each other or not;
 //! * [`mapping`]: Algorithm 1, the movable marker algorithm, and their parts (Section 2.3);
 //! * [`check`]: runs an algorithm, or any explorer, on every start, and judges the maps;
-//! * [`trace`]: checks recorded explorations.
+//! * [`trace`]: checks recorded explorations;
+//! * [`visits`]: judges visits that views do not decide.
 //!
 //! ```
 //! use toposlam_model::{
@@ -59,6 +60,7 @@ pub mod measurement;
 pub mod percept;
 mod similar;
 pub mod trace;
+pub mod visits;
 pub mod world;
 
 #[cfg(test)]

@@ -96,6 +96,18 @@ impl FoldedTrail {
         Ok(())
     }
 
+    /// The robot left by a door, turned back on the edge behind it, and sees where it came from again. A mark on that
+    /// edge is not looked for.
+    ///
+    /// # Errors
+    /// Returns an error if no world of any size explains the walk. The trail is then of no more use.
+    pub(crate) fn come_back(&mut self, door: Door, percept: Percept) -> Result<(), TrailError> {
+        self.check_door(door)?;
+        self.moves += 1;
+        self.pose = self.classes.find(self.classes.turned(self.pose, door.0));
+        Ok(self.classes.compare(self.pose, percept, self.moves)?)
+    }
+
     /// All sightings of the directional marker are one pose. The robot has come in by the first dart of a new
     /// vertex.
     #[inline]
@@ -300,6 +312,12 @@ impl FoldedTrail {
     /// Whether the walk determines its world: no dart is open, and the marker was seen.
     pub fn is_complete(&self) -> bool {
         self.open_count() == 0 && self.marker().is_some()
+    }
+
+    /// Whether a marker that lies at a vertex was seen, or may lie where the robot has not been, behind an open dart.
+    pub fn may_hold_marker(&self) -> bool {
+        let is_seen = |first| self.sighting(first) != Sighting::Nothing;
+        self.open_count() > 0 || self.vertices().any(is_seen)
     }
 
     /// The dart of a root that stands for a dart.

@@ -1,0 +1,135 @@
+//! Searches for a choice of visits that some world explains: that of a walk that can be folded.
+//!
+//! To decide whether there is one is NP-complete, even without a marker. The search goes depth first in the order of
+//! time. At a place that the walk has folded onto a known vertex, only what was perceived there before can be chosen, so
+//! it branches at new vertices alone. What was tried in vain is not tried again from the same
+//! [folded trail](FoldedTrail).
+
+use std::collections::BTreeSet;
+
+use super::{VisitAlternative, VisitSet, VisitWay};
+use crate::{folding::FoldedTrail, percept::Door};
+
+/// Whether some world explains visits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Explanation {
+    /// Some world explains these alternatives, one of each visit.
+    Explained(Vec<Option<VisitAlternative>>),
+    /// No world explains any choice of the visits up to this one, counted from 0.
+    Impossible { visit: usize },
+    /// The search was ended after its largest number of steps.
+    NotKnown,
+}
+
+/// The folded walk of some visits.
+#[derive(Clone, Debug)]
+struct Walk {
+    trail: FoldedTrail,
+    next: Next,
+}
+
+/// Where the robot is after a visit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Next {
+    /// It has not come to a vertex.
+    Begins,
+    /// It drives away from the last vertex, which it left by this door.
+    Leaves(Door),
+    /// It drives back to the last vertex, having left it by this door.
+    ComesBack(Door),
+    /// It stands at the last vertex.
+    Stands,
+}
+
+/// A walk, and the ways to go on that have not been tried, the last one first.
+struct Branch {
+    walk: Walk,
+    untried: Vec<(Option<VisitAlternative>, Next)>,
+}
+
+/// Searches for a choice of the visits that some world explains, in at most so many steps. The robot has a directional
+/// marker, or none.
+pub fn explain(visits: &[VisitSet], is_marked: bool, most_steps: usize) -> Explanation {
+    let begin = Walk { trail: FoldedTrail::default(), next: Next::Begins };
+    let Some(first) = visits.first() else { return Explanation::Explained(Vec::new()) };
+    let mut branches = vec![Branch { untried: begin.ways(first, visits.len() == 1), walk: begin }];
+    let mut choice = Vec::new();
+    let mut tried = BTreeSet::new();
+    let (mut steps, mut farthest) = (0, 0);
+    while let Some(branch) = branches.last_mut() {
+        let Some((alternative, next)) = branch.untried.pop() else {
+            branches.pop();
+            choice.pop();
+            continue;
+        };
+        if steps == most_steps {
+            return Explanation::NotKnown;
+        }
+        steps += 1;
+        let walk = branch.walk.after(alternative, next);
+        let Some(walk) = walk.filter(|walk| !is_marked || walk.may_hold_marker()) else { continue };
+        let visit = branches.len();
+        farthest = farthest.max(visit);
+        if !tried.insert((visit, next, walk.form())) {
+            continue;
+        }
+        choice.push(alternative);
+        let Some(set) = visits.get(visit) else { return Explanation::Explained(choice) };
+        let untried = walk.ways(set, visit + 1 == visits.len());
+        branches.push(Branch { walk, untried });
+    }
+    Explanation::Impossible { visit: farthest }
+}
+
+impl Walk {
+    /// The alternatives of the next visit, each with where the robot is after it, from the last to the first.
+    fn ways(&self, visit: &VisitSet, is_last: bool) -> Vec<(Option<VisitAlternative>, Next)> {
+        let mut ways = Vec::new();
+        for &alternative in visit.alternatives() {
+            match alternative {
+                None => ways.push((None, self.next.without_vertex(visit.way()))),
+                Some(vertex) if is_last && vertex.door.is_none() => {
+                    ways.push((alternative, Next::Stands));
+                }
+                Some(vertex) => {
+                    ways.extend(vertex.doors().map(|door| (alternative, Next::Leaves(door))));
+                }
+            }
+        }
+        ways.reverse();
+        ways
+    }
+
+    /// The walk after a visit; `None` if no world explains it.
+    fn after(&self, alternative: Option<VisitAlternative>, next: Next) -> Option<Self> {
+        let mut trail = self.trail.clone();
+        if let Some(VisitAlternative { percept, .. }) = alternative {
+            match self.next {
+                Next::Begins => trail = FoldedTrail::new(percept).ok()?,
+                Next::Leaves(door) => trail.step(door, percept).ok()?,
+                Next::ComesBack(door) => trail.come_back(door, percept).ok()?,
+                Next::Stands => {}
+            }
+        }
+        Some(Self { trail, next })
+    }
+
+    fn may_hold_marker(&self) -> bool {
+        self.next == Next::Begins || self.trail.may_hold_marker()
+    }
+
+    /// What is known of the world: walks with one form can go on alike.
+    fn form(&self) -> Vec<u32> {
+        if self.next == Next::Begins { Vec::new() } else { self.trail.seen_from_robot() }
+    }
+}
+
+impl Next {
+    fn without_vertex(self, way: VisitWay) -> Self {
+        match (way, self) {
+            (VisitWay::Back, Self::Leaves(door)) => Self::ComesBack(door),
+            (VisitWay::Back, Self::ComesBack(door)) => Self::Leaves(door),
+            (_, same) => same,
+        }
+    }
+}

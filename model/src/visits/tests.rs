@@ -1,0 +1,210 @@
+//! Sets of percepts against each of their choices, and against every walk in every small world.
+
+use std::collections::BTreeSet;
+
+use proptest::{collection::vec, prelude::*};
+
+use super::*;
+use crate::{
+    any_graph::{Class, any_graph, by_neighbours, starts},
+    embedded_graph::{Dart, EmbeddedGraph},
+    marker::{Directional, Marker, NoMarker},
+    percept::Sighting,
+    trace::anywhere,
+    world::{GraphWorld, State, World},
+};
+
+fn unmarked(degree: u32, door: u32) -> Option<VisitAlternative> {
+    let percept = Percept { degree, sighting: Sighting::Nothing };
+    Some(VisitAlternative { percept, door: Some(Door(door)) })
+}
+
+/// Every choice of some visits.
+fn choices(visits: &[VisitSet]) -> Vec<Vec<VisitSet>> {
+    visits.iter().fold(vec![Vec::new()], |choices, visit| {
+        let with = |choice: &Vec<VisitSet>| {
+            let one = |&alternative: &_| {
+                let mut choice = choice.clone();
+                choice.push(VisitSet::new([alternative], visit.way()));
+                choice
+            };
+            visit.alternatives().iter().map(one).collect::<Vec<_>>()
+        };
+        choices.iter().flat_map(with).collect()
+    })
+}
+
+/// Whether a robot that drives as one choice says, moving in the world itself, perceives what it says. Only visits that
+/// are all decided, with doors.
+fn drives(
+    graph: &EmbeddedGraph,
+    marker: impl Marker + Copy,
+    start: State,
+    choice: &[VisitSet],
+) -> bool {
+    let mut world = GraphWorld::with_marker(graph, marker, start.pose).at(start);
+    // The robot is somewhere on the edge before the vertex that the world has it at; to turn back there is to drive
+    // on to the vertex, to take the way back, and to be before the other end of the edge.
+    for visit in choice {
+        match visit.alternatives() {
+            [None] if visit.way() == VisitWay::Through => {}
+            [None] => world.traverse(Door::BACK).unwrap(),
+            [Some(VisitAlternative { percept, door: Some(door) })] => {
+                if world.sensed() != *percept || world.traverse(*door).is_err() {
+                    return false;
+                }
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    true
+}
+
+/// Visits with up to three alternatives each, of vertices with up to three doors.
+fn any_visits(
+    marked: bool,
+    degrees: std::ops::RangeInclusive<u32>,
+    most: usize,
+) -> impl Strategy<Value = Vec<VisitSet>> {
+    let alternative =
+        (degrees, 0..3_u32, 0..6_u32, 0..4_u8).prop_map(move |(degree, door, at, kind)| {
+            let sighting = if marked && at < degree {
+                Sighting::Pointing(Door(at))
+            } else {
+                Sighting::Nothing
+            };
+            let percept = Percept { degree, sighting };
+            (kind > 0).then_some(VisitAlternative { percept, door: Some(Door(door % degree)) })
+        });
+    let visit = (vec(alternative, 1..=3), any::<bool>()).prop_map(|(alternatives, back)| {
+        VisitSet::new(alternatives, if back { VisitWay::Back } else { VisitWay::Through })
+    });
+    vec(visit, 1..=most)
+}
+
+#[test]
+fn a_visit_that_may_be_none_leaves_the_robot_on_its_edge() {
+    // A tail, and a triangle.
+    let graph = by_neighbours("end: a | a: end b c | b: a c | c: b a");
+    let poses = |visits: &[VisitSet]| {
+        let states = states_after(&graph, &NoMarker, &anywhere(&graph, &NoMarker), visits);
+        states.into_iter().map(|states| states.len()).collect::<Vec<_>>()
+    };
+    let fork = |with_none: bool| {
+        VisitSet::new(
+            [unmarked(3, 1)].into_iter().chain(with_none.then_some(None)),
+            VisitWay::Through,
+        )
+    };
+    assert_eq!(poses(&[fork(false)]), [3]);
+    assert_eq!(poses(&[fork(true)]), [8]);
+    let end = VisitSet::new([unmarked(1, 0)], VisitWay::Back);
+    // From the end one comes to the fork, or is still on the way.
+    assert_eq!(poses(&[end.clone(), fork(false), end.clone()]), [1, 1, 0]);
+    assert_eq!(poses(&[end.clone(), fork(true), end.clone()]), [1, 2, 0]);
+    // A robot that turns back before the fork comes to the end again.
+    assert_eq!(poses(&[end.clone(), VisitSet::turned_back(), end.clone()]), [1, 1, 1]);
+    assert_eq!(poses(&[end.clone(), end]), [1, 0]);
+    // Where the log ends, no door was taken.
+    let stands = VisitAlternative { door: None, ..unmarked(3, 0).unwrap() };
+    assert_eq!(poses(&[VisitSet::new([Some(stands)], VisitWay::Through)]), [3]);
+}
+
+#[test]
+fn turning_back_contradicts_a_vertex_that_has_another_degree_then() {
+    let visit = |degree, door| VisitSet::new([unmarked(degree, door)], VisitWay::Through);
+    let turned = VisitSet::turned_back;
+    let impossible = |visits: &[VisitSet]| match explain(visits, false, 1000) {
+        Explanation::Impossible { visit } => Some(visit),
+        Explanation::Explained(_) => None,
+        Explanation::NotKnown => panic!("there are few choices"),
+    };
+    assert_eq!(impossible(&[visit(3, 1), turned(), visit(3, 1)]), None);
+    assert_eq!(impossible(&[visit(3, 1), turned(), visit(4, 1), visit(3, 1)]), Some(2));
+    assert_eq!(impossible(&[visit(3, 1), turned(), turned(), visit(4, 1)]), None);
+    // Round a fork, back into its tail.
+    assert_eq!(impossible(&[visit(1, 0), visit(3, 0), visit(1, 0)]), None);
+    assert_eq!(impossible(&[visit(1, 0), visit(3, 0), visit(2, 1)]), Some(2));
+    assert_eq!(impossible(&[VisitSet::new([], VisitWay::Through)]), Some(0));
+    assert_eq!(impossible(&[]), None);
+    let unknown = VisitSet::new([None, unmarked(2, 1), unmarked(3, 1)], VisitWay::Through);
+    assert_eq!(explain(&vec![unknown; 20], false, 19), Explanation::NotKnown);
+}
+
+#[test]
+fn what_was_tried_in_vain_is_not_tried_again() {
+    // Each of 40 visits may be no vertex, which no world shows; the last two contradict each other.
+    let either = VisitSet::new([None, unmarked(2, 1)], VisitWay::Through);
+    let fork = |degree| VisitSet::new([unmarked(degree, 1)], VisitWay::Through);
+    let mut visits = vec![fork(3)];
+    visits.extend(vec![either; 40]);
+    visits.extend([fork(3), VisitSet::turned_back(), fork(4)]);
+    assert_eq!(explain(&visits, false, 10_000), Explanation::Impossible { visit: 43 });
+}
+
+proptest! {
+    #[test]
+    fn judging_sets_is_judging_each_choice(
+        graph in any_graph(Class::Multigraph, 4),
+        visits in any_visits(true, 1..=3, 5),
+        marked in any::<bool>(),
+    ) {
+        let starts = if marked { anywhere(&graph, &Directional) } else { anywhere(&graph, &NoMarker) };
+        let after = |visits: &[VisitSet]| {
+            let after = if marked {
+                states_after(&graph, &Directional, &starts, visits)
+            } else {
+                states_after(&graph, &NoMarker, &starts, visits)
+            };
+            if after.len() < visits.len() { Vec::new() } else { after.last().unwrap().clone() }
+        };
+        let each: BTreeSet<State> = choices(&visits).iter().flat_map(|choice| after(choice)).collect();
+        prop_assert_eq!(&after(&visits), &each.into_iter().collect::<Vec<_>>());
+        let drives = |start: &State| choices(&visits).iter().any(|choice| {
+            if marked { drives(&graph, Directional, *start, choice) } else { drives(&graph, NoMarker, *start, choice) }
+        });
+        prop_assert_eq!(starts.iter().any(drives), !after(&visits).is_empty());
+    }
+
+    #[test]
+    fn some_world_explains_visits_exactly_if_a_small_one_does(
+        (marked, visits) in any::<bool>().prop_flat_map(|marked| {
+            // Each open dart may lead to a dead end: four edges are enough.
+            let visits = prop_oneof![any_visits(marked, 1..=2, 4), any_visits(marked, 1..=3, 2)];
+            (Just(marked), visits)
+        }),
+    ) {
+        let in_small = (1..=5).any(|edges| starts(Class::Multigraph, edges).iter().any(|graph| {
+            let placed = if marked {
+                vec![GraphWorld::new(graph, Dart(0)).state()]
+            } else {
+                anywhere(graph, &NoMarker)
+            };
+            let poses = placed.iter().flat_map(|&state| graph.darts().map(move |pose| State { pose, ..state }));
+            let states: Vec<State> = poses.collect();
+            let after = if marked {
+                states_after(graph, &Directional, &states, &visits)
+            } else {
+                states_after(graph, &NoMarker, &states, &visits)
+            };
+            after.len() == visits.len() && !after[visits.len() - 1].is_empty()
+        }));
+        match explain(&visits, marked, 100_000) {
+            Explanation::Explained(choice) => {
+                prop_assert!(in_small, "{choice:?}");
+                let chosen = |(visit, one): (&VisitSet, &_)| visit.alternatives().contains(one);
+                prop_assert!(visits.iter().zip(&choice).all(chosen));
+                prop_assert_eq!(visits.len(), choice.len());
+                let only: Vec<_> = visits.iter().zip(&choice)
+                    .map(|(visit, &one)| VisitSet::new([one], visit.way())).collect();
+                prop_assert!(matches!(explain(&only, marked, 1000), Explanation::Explained(_)));
+            }
+            Explanation::Impossible { visit } => {
+                prop_assert!(!in_small);
+                let before = explain(&visits[..visit], marked, 100_000);
+                prop_assert!(matches!(before, Explanation::Explained(_)));
+            }
+            Explanation::NotKnown => prop_assert!(false, "there are few choices"),
+        }
+    }
+}
