@@ -24,6 +24,7 @@ use super::{
     known_world::{Known, KnownWorld, MarkerStart},
     log_head::{LogHead, MarkerNotShown},
     marked_visits::{AddedMarker, MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
+    possible_visits::PossibleVisits,
     quirks::Quirks,
     twin::TwinWorld,
 };
@@ -190,6 +191,12 @@ impl LogCheck<'_> {
             }
             (error, _) => CheckError::Judge(error),
         })?;
+        let judgement = if extracted.evidence == Evidence::Laser {
+            let ExtractedRun { events, junctions, .. } = &extracted;
+            judgement.with_possible(PossibleVisits::judge(events, junctions, &config))
+        } else {
+            judgement
+        };
         let twin = TwinWorld::find(&judgement, &config);
         let (is_resumed, quirks) = (settings.is_resumed, self.quirks.clone());
         Ok(CheckedLog { extracted, judgement, config, known, added, twin, is_resumed, quirks })

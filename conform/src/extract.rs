@@ -9,7 +9,7 @@ use toposlam_logs::{
     error::LogError,
     messages,
     reader::Log,
-    record::{EventKind, Frame, FrameSensor, SensingError},
+    record::{EventId, EventKind, Frame, FrameSensor, SensingError},
     topic_map::{BoundTopicMap, Role, TopicMap},
 };
 use toposlam_model::{
@@ -71,6 +71,8 @@ pub struct ExtractedRun {
     pub unreadable: u64,
     /// The number of laser scans that were sensed.
     pub scans: u64,
+    /// The messages of all scans, in their order.
+    pub scan_messages: Vec<EventId>,
     pub skipped: SkippedMessages,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
@@ -374,6 +376,7 @@ impl<W: Watch> Extraction<'_, W> {
             }
             EventKind::Frame(Frame { scan: Some(scan), odometry, .. }) => {
                 self.run.scans += 1;
+                self.run.scan_messages.push(id);
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
                 let placed = self.placing.scan(stamp, PlacedScan { source, scan, odometry });
                 if let Some(placed) = &placed {

@@ -20,6 +20,7 @@ use super::{
     events::{OutOfOrder, RunEvents, SightingError},
     impossible::{FoldedTrace, Impossibility, first_percept, folded_before},
     measured_hallways::MeasuredHallways,
+    possible_visits::PossibleVisits,
     quirks::Quirks,
     tolerance::Tolerance,
 };
@@ -31,6 +32,10 @@ pub struct Judgement {
     /// Its arrivals and doors, up to the first that is out of turn. The ids are indices of `events`.
     pub trace: Trace,
     pub divergence: Option<Divergence>,
+    /// A divergence that accuses nobody, because scans may have shown what it needs wrongly.
+    pub contradiction: Option<Divergence>,
+    /// The visits of a laser log, which decide its verdict.
+    pub possible: Option<PossibleVisits>,
     /// The index of the first arrival after the robot got lost. Without a known world, the events from there on are
     /// compared with no world.
     pub lost: Option<usize>,
@@ -65,15 +70,15 @@ pub struct RunCoverage {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum ConformVerdict {
     /// Everything fits.
     Conforms,
     /// An event does not fit.
     Diverged,
-    /// Everything fits, but the run or the search is not complete.
+    /// Everything fits, but the run or the search is not complete; or only what may be seen wrongly does not fit.
     #[default]
-    Incomplete,
+    NotKnown,
 }
 
 impl ConformVerdict {
@@ -81,8 +86,12 @@ impl ConformVerdict {
         match self {
             Self::Conforms => "conforms",
             Self::Diverged => "diverged",
-            Self::Incomplete => "incomplete",
+            Self::NotKnown => "not-known",
         }
+    }
+
+    pub fn in_words(self) -> &'static str {
+        if self == Self::NotKnown { "not known" } else { self.name() }
     }
 }
 
@@ -169,6 +178,8 @@ impl Judgement {
         let mut judgement = Self {
             events: events.clone(),
             divergence: None,
+            contradiction: None,
+            possible: None,
             lost: trace.lost().first().map(|&percept| trace.percept_event(percept).id),
             unrecognised: None,
             trail: None,
@@ -340,17 +351,29 @@ impl Judgement {
         Ok(Self { events: self.events, unrecognised: Some(event), ..before })
     }
 
+    /// The judgement of visits that were inferred from scans. Where some are not certain, they are judged as sets.
+    pub(super) fn with_possible(self, possible: PossibleVisits) -> Self {
+        let contradiction = self.divergence;
+        let known = if contradiction.is_none() { self.determined } else { None };
+        let determined = known.filter(|_| self.unrecognised.is_none());
+        Self { divergence: None, contradiction, possible: Some(possible), determined, ..self }
+    }
+
     pub fn verdict(&self) -> ConformVerdict {
+        let is_decided = match &self.possible {
+            Some(possible) if self.contradiction.is_some() || possible.says_nothing() => false,
+            Some(possible) if self.unrecognised.is_some() => possible.conform(),
+            _ => self.unrecognised.is_none() && self.is_decided(),
+        };
         if self.divergence.is_some() {
             ConformVerdict::Diverged
-        } else if self.unrecognised.is_none()
+        } else if is_decided
             && (self.lost.is_none() || self.poses.is_some())
-            && self.is_decided()
             && self.events.is_whole(self.algorithm.is_some())
         {
             ConformVerdict::Conforms
         } else {
-            ConformVerdict::Incomplete
+            ConformVerdict::NotKnown
         }
     }
 

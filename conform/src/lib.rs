@@ -22,6 +22,7 @@ mod marked_visits;
 mod measured_hallways;
 mod message_clock;
 mod placed_scenes;
+mod possible_visits;
 mod quirks;
 mod recorded_events;
 mod report;
@@ -58,13 +59,14 @@ pub use marked_visits::{
 };
 pub use measured_hallways::MeasuredHallways;
 pub use placed_scenes::{SceneClockError, SensedScene};
+pub use possible_visits::{PossibleVisits, VisitFit};
 pub use quirks::Quirks;
 pub use recorded_events::RecordedEvents;
 pub use report::{
-    Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
-    FoldedReport, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RecordedWorld,
-    ReportedEvent, ReportedVisit, RequiredCoverage, SmallestFound, SourceFile, ToleratedQuirk,
-    UnreadLog, WorldFact, case_names,
+    Allowed, ComparedDoors, ConformReports, Contradiction, CoveredCase, DivergenceReport,
+    EventPose, Facts, FoldedReport, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName,
+    RecordedWorld, ReportedEvent, ReportedVisit, RequiredCoverage, SmallestFound, SourceFile,
+    ToleratedQuirk, UnreadLog, WorldFact, case_names,
 };
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};
 pub use twin::TwinWorld;

@@ -11,6 +11,7 @@ use toposlam_model::{
 use toposlam_vision::{
     geometry::{angle, distance, unit},
     place::nearest_direction,
+    visits::VisitPercept,
 };
 
 use super::events::CheckedEvent;
@@ -31,6 +32,12 @@ pub struct VisitedJunction {
     pub extent: f64,
     /// The directions of the doors, in radians, clockwise from the entry door; none if the visit is undecided.
     pub doors: Vec<f64>,
+    /// The percepts that the views cannot exclude, of which `None` is no junction; none if nothing is known.
+    pub alternatives: Vec<Option<VisitPercept>>,
+    /// Whether the robot left the way that it came.
+    pub goes_back: bool,
+    /// The direction to where it left, in radians; `None` if the log ends there.
+    pub exit: Option<f64>,
 }
 
 /// Sightings that the log itself does not record as percepts.
@@ -195,7 +202,16 @@ mod tests {
         let (mut events, mut junctions) = (Vec::new(), Vec::new());
         for (number, centre) in (1_u64..).zip(centres) {
             let (event, doors) = (events.len(), doors.clone());
-            junctions.push(VisitedJunction { event, centre, clearance: 1.2, extent: 1.2, doors });
+            junctions.push(VisitedJunction {
+                event,
+                centre,
+                clearance: 1.2,
+                extent: 1.2,
+                doors,
+                alternatives: Vec::new(),
+                goes_back: false,
+                exit: None,
+            });
             let entry = Some(PI);
             let arrival = Arrival { number: None, degree: 3, sighting: None, shape: None, entry };
             let arrived = CheckedKind::Arrival { arrival, entry_off: None, hallway: None };

@@ -51,7 +51,8 @@ impl TwinWorld {
     /// it; the log is judged in it again. A robot without a marker has too many.
     pub(super) fn find(judgement: &Judgement, config: &ConformConfig) -> Option<Self> {
         let marker = config.marker;
-        if judgement.divergence.is_some() || marker.name() == NoMarker.name() {
+        let diverges = judgement.divergence.is_some() || judgement.contradiction.is_some();
+        if diverges || marker.name() == NoMarker.name() {
             return None;
         }
         let fits = |graph: &EmbeddedGraph, start: State| {

@@ -17,10 +17,17 @@ pub fn visit_events(log: VisitLog<EventSource>) -> (Vec<CheckedEvent>, Vec<Visit
         |&source: &EventSource| CheckedEvent { source, kind: CheckedKind::TurnedBack };
     for visit in log.visits {
         events.extend(visit.turned_back.iter().map(turned_back));
-        let Visit { at, centre, clearance, extent, sighting, shape, hallway, doubt, .. } = visit;
-        let doors = if doubt.is_none() { visit.doors() } else { Vec::new() };
-        let (event, centre) = (events.len(), centre.into());
-        junctions.push(VisitedJunction { event, centre, clearance, extent, doors });
+        let Visit { at, clearance, extent, sighting, shape, hallway, doubt, .. } = visit;
+        junctions.push(VisitedJunction {
+            event: events.len(),
+            centre: visit.centre.into(),
+            clearance,
+            extent,
+            doors: if doubt.is_none() { visit.doors() } else { Vec::new() },
+            alternatives: visit.alternatives(),
+            goes_back: visit.goes_back,
+            exit: visit.exit.map(|exit| exit.direction),
+        });
         let mut push = |source, kind| events.push(CheckedEvent { source, kind });
         if let Some(cause) = doubt {
             push(at, CheckedKind::Undecided(cause));

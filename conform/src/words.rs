@@ -20,10 +20,11 @@ use super::{
     judgement::{ConformVerdict, ReachedLimit},
     marked_visits::AddedMarker,
     measured_hallways::MeasuredHallways,
+    possible_visits::{PossibleVisits, VisitFit},
     report::{
-        Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
-        LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RequiredCoverage,
-        WorldFact,
+        Allowed, ComparedDoors, ConformReports, Contradiction, CoveredCase, DivergenceReport,
+        EventPose, Facts, LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName,
+        RequiredCoverage, WorldFact,
     },
     twin::TwinWorld,
 };
@@ -36,7 +37,7 @@ pub fn verdict(verdict: ConformVerdict) -> &'static str {
     match verdict {
         ConformVerdict::Conforms => "conforms",
         ConformVerdict::Diverged => "diverges",
-        ConformVerdict::Incomplete => "incomplete: no divergence so far",
+        ConformVerdict::NotKnown => "not known",
     }
 }
 
@@ -54,15 +55,15 @@ pub fn result(report: &LogReport) -> String {
 
 /// The number of logs with each verdict.
 pub fn together(reports: &ConformReports) -> String {
-    let [conform, diverged, incomplete] =
-        [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::Incomplete]
+    let [conform, diverged, not_known] =
+        [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::NotKnown]
             .map(|verdict| reports.count(verdict));
     let unread = match reports.unread.len() {
         0 => String::new(),
         count => format!(", {count} unreadable"),
     };
     let logs = counted(reports.logs.len() + reports.unread.len(), "log");
-    format!("{logs}: {conform} conform, {diverged} diverge, {incomplete} incomplete{unread}")
+    format!("{logs}: {conform} conform, {diverged} diverge, {not_known} not known{unread}")
 }
 
 pub fn fault(fault: FaultClass) -> &'static str {
@@ -76,6 +77,9 @@ pub fn fault(fault: FaultClass) -> &'static str {
 
 /// The events of a log without a divergence.
 pub fn fits(report: &LogReport) -> String {
+    if let Some(Contradiction { event, .. }) = report.facts.contradiction {
+        return format!("The events before event {} fit.", grouped(event as u128));
+    }
     let all = match report.events.len() {
         0 => return "There are no events.".to_owned(),
         1 => "The only event fits".to_owned(),
@@ -205,7 +209,11 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
             remarks.push(cause.to_owned());
         }
     }
-    if let Some((event, why)) = facts.unrecognised {
+    remarks.extend(facts.contradiction.as_ref().map(contradiction));
+    remarks.extend(facts.possible.as_ref().and_then(|visits| possible(visits, facts)));
+    if let Some((event, why)) = facts.unrecognised
+        && facts.possible.is_none()
+    {
         let what = match why {
             UndecidedCause::UnseenWay => {
                 format!("at event {event} the robot drove where its scanner did not look")
@@ -236,6 +244,47 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
         remarks.push(format!("{images} could not be decoded and were skipped"));
     }
     remarks
+}
+
+/// What does not fit in a laser log.
+fn contradiction(Contradiction { event: number, found, cause }: &Contradiction) -> String {
+    let found = found.as_ref().map_or("end of the log".to_owned(), event);
+    format!(
+        "event {number} does not fit: {found}; {cause}. What scans show may be wrong where the robot did not drive, \
+         so this accuses nobody"
+    )
+}
+
+/// The visits of a laser log that are not certain, and why any log would fit.
+fn possible(visits: &PossibleVisits, facts: &Facts) -> Option<String> {
+    let open = visits.visits - visits.certain;
+    let whose = if facts.world.is_some() { "the world" } else { "some world" };
+    let fit = match visits.fit {
+        VisitFit::Fits => format!("a choice of their percepts fits {whose}"),
+        VisitFit::Contradiction => format!("no choice of their percepts fits {whose}"),
+        VisitFit::Anything => {
+            let why = "any visits would fit: there is no marker, and the robot never turned back";
+            return Some(if open == 0 {
+                why.to_owned()
+            } else {
+                format!("{open} of {} visits are not certain; {why}", visits.visits)
+            });
+        }
+        VisitFit::UnseenWay => {
+            "the robot drove where its scanner did not look, and may have passed more there"
+                .to_owned()
+        }
+        VisitFit::NotKnown => format!("whether their percepts fit {whose} is not known"),
+    };
+    let decided: Vec<_> =
+        visits.decided_by_world.iter().map(|visit| (visit + 1).to_string()).collect();
+    let decided = match &decided[..] {
+        [] => String::new(),
+        [one] => format!("; the world decides visit {one}"),
+        several => format!("; the world decides visits {}", several.join(", ")),
+    };
+    (open > 0 || visits.fit == VisitFit::UnseenWay)
+        .then(|| format!("{open} of {} visits are not certain; {fit}{decided}", visits.visits))
 }
 
 /// A remark on a log that was recorded in another world.
@@ -376,12 +425,13 @@ fn world(report: &LogReport) -> String {
             None => "from any start".to_owned(),
             Some(start) => format!("from {start}"),
         };
-        let fit = match (&report.divergence, left, pose) {
-            (Some(_), ..) => {
+        let diverges = report.divergence.is_some() || facts.contradiction.is_some();
+        let fit = match (diverges, left, pose) {
+            (true, ..) => {
                 format!("{} at the start", counted(*candidates_at_start, "candidate pose"))
             }
-            (None, _, Some(pose)) => format!("the robot is {}", pose_name(pose)),
-            (None, left, None) => format!("{} left", counted(left, "candidate pose")),
+            (false, _, Some(pose)) => format!("the robot is {}", pose_name(pose)),
+            (false, left, None) => format!("{} left", counted(left, "candidate pose")),
         };
         return format!("{name}, {from}; {fit}");
     }

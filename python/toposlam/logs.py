@@ -156,7 +156,7 @@ class ConformReport:
 
     path: Path
     verdict: str
-    """`conforms`, `diverged` or `incomplete`."""
+    """`conforms`, `diverged` or `not-known`."""
     evidence: str
     """The source of the events: `recorded`, `scenes`, `pictures` or `laser`."""
     events: tuple[LogEvent, ...]
@@ -210,7 +210,7 @@ def conform(
     Without a world, the search for one is bounded: `cls` is its class (`"multigraph"`), `max_edges` the
     most edges, and `max_steps` (500,000) the most steps. `max_darts` is the most darts of the map that the
     algorithm is allowed; by default it is that of the log, or 1,000. If a bound is reached, the verdict is
-    `incomplete`. `progress` shows a bar or not; without it, on a terminal and in a notebook.
+    `not-known`. `progress` shows a bar or not; without it, on a terminal and in a notebook.
 
     Returns the report: the verdict, the events, and the first divergence or the world.
 

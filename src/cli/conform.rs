@@ -49,7 +49,7 @@ use judged_log::JudgedLog;
 ///
 /// For each log, the command reports that it conforms and which cases of the specification it covers, or
 /// the first event at which it diverges, why, and the class of the fault: perception, motion, algorithm
-/// or log. If a limit was reached first, or the run did not end, the log is incomplete.
+/// or log. If a limit was reached first, or the run did not end, it is not known whether the log conforms.
 ///
 /// A log is a ROS 1 bag, an MCAP file, a rosbag2 folder or .db3 file, a CARMEN log, or events as JSON lines
 /// or CSV. If it records percepts and doors, these are checked. Otherwise they are inferred from its scenes,
@@ -370,7 +370,7 @@ fn outcome(verdict: ConformVerdict) -> Outcome {
     match verdict {
         ConformVerdict::Conforms => Outcome::Holds,
         ConformVerdict::Diverged => Outcome::Violated,
-        ConformVerdict::Incomplete => Outcome::Incomplete,
+        ConformVerdict::NotKnown => Outcome::Incomplete,
     }
 }
 

@@ -11,8 +11,8 @@ import { DESK, PHONE, assertFitsPhone, photograph, visitAll } from "./visits.mjs
 const VERDICTS = {
   conforms: ["Conforms"],
   diverged: ["Diverged"],
-  open: ["Incomplete"],
-  several: ["3 logs: 1 diverged, 1 incomplete, 1 conforms", "Conforms", "Diverged", "Incomplete"],
+  open: ["Not known"],
+  several: ["3 logs: 1 diverged, 1 not known, 1 conforms", "Conforms", "Diverged", "Not known"],
 };
 
 /** Follows a link within the page; what it leads to is then on the screen. */

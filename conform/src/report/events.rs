@@ -1,12 +1,18 @@
 //! The events and the visits of a report.
 
 use serde::Serialize;
-use toposlam_model::{embedded_graph::Dart, percept::Sighting};
+use toposlam_model::{
+    embedded_graph::Dart,
+    percept::{Door, Sighting},
+};
+use toposlam_vision::visits::VisitPercept;
 
 use super::super::{
     check::{CheckedLog, LogSource},
-    events::{CheckedEvent, CheckedKind, EventSource, RunEvents},
+    events::{CheckedEvent, CheckedKind, EventSource},
+    extract::ExtractedRun,
     known_world::Known,
+    possible_visits::PossibleVisits,
 };
 
 #[derive(Clone, Debug, PartialEq)]
@@ -43,10 +49,24 @@ pub struct ReportedVisit {
     pub index: usize,
     /// In seconds, by the clock of the log.
     pub stamp: f64,
+    /// The number of its scan, from 0; `None` if it was not inferred from one.
+    pub scan: Option<usize>,
+    /// Its centre in the frame of odometry, in metres; `None` if it is not known.
+    pub position: Option<[f64; 2]>,
     /// The number of doors; `None` if the visit is undecided.
     pub degree: Option<u32>,
-    /// The door by which the robot left; `None` if the log ends there.
+    /// The door by which the robot left; `None` if the log ends there, or if the visit is undecided.
     pub door: Option<u32>,
+    /// The direction in which it left, in the frame of odometry, in radians; `None` if it is not known.
+    pub exit: Option<f64>,
+    /// `through`, or `back` if the robot left the way that it came; `None` if it is not known.
+    pub way: Option<&'static str>,
+    /// Degrees and doors that the sensor cannot exclude, of which `None` is no junction; empty if nothing is known.
+    pub alternatives: Vec<Option<(u32, Option<u32>)>>,
+    /// Why several are left.
+    pub doubt: Option<&'static str>,
+    /// Whether the known world leaves one of several.
+    pub decided_by_world: bool,
     /// `None` if that is not recorded.
     pub marker: Option<MarkerSeen>,
     /// Whether the robot turned back on its way there.
@@ -118,20 +138,25 @@ impl CheckedLog {
 
 impl ReportedVisit {
     /// The junctions that a robot visited.
-    pub(super) fn all(events: &RunEvents) -> Vec<Self> {
+    pub(super) fn all(run: &ExtractedRun, possible: Option<&PossibleVisits>) -> Vec<Self> {
         let mut visits: Vec<Self> = Vec::new();
         let mut turned_back = false;
-        for CheckedEvent { source, kind } in &events.events {
-            let (degree, marker, length) = match kind {
+        for (event, CheckedEvent { source, kind }) in run.events.events.iter().enumerate() {
+            let (degree, marker, length, doubt) = match kind {
                 CheckedKind::Arrival { arrival, hallway, .. } => (
                     Some(arrival.degree),
                     arrival.sighting.and_then(MarkerSeen::from_sighting),
                     hallway.map(|hallway| hallway.length),
+                    None,
                 ),
-                CheckedKind::Undecided(_) => (None, None, None),
+                CheckedKind::Undecided(cause) => (None, None, None, Some(cause.name())),
                 CheckedKind::Door { door, .. } => {
                     if let Some(visit) = visits.last_mut() {
                         visit.door = Some(door.0);
+                        for alternative in visit.alternatives.iter_mut().flatten() {
+                            alternative.1 = Some(door.0);
+                        }
+                        visit.way = Some(if *door == Door::BACK { "back" } else { "through" });
                     }
                     continue;
                 }
@@ -141,11 +166,29 @@ impl ReportedVisit {
                 }
                 CheckedKind::LeftBetweenDoors { .. } => continue,
             };
+            let junction = run.junctions.iter().find(|junction| junction.event == event);
+            let undecided = junction.filter(|_| degree.is_none());
+            let alternatives = match (degree, undecided) {
+                (Some(degree), _) => vec![Some((degree, None))],
+                (None, Some(junction)) => {
+                    let alternative = |seen: &VisitPercept| (seen.degree, seen.door);
+                    junction.alternatives.iter().map(|it| it.as_ref().map(alternative)).collect()
+                }
+                (None, None) => Vec::new(),
+            };
+            let index = visits.len();
             visits.push(Self {
-                index: visits.len(),
+                index,
                 stamp: source.time as f64 / 1e9,
+                scan: run.scan_messages.iter().position(|&scan| scan == source.id),
+                position: junction.map(|junction| junction.centre),
                 degree,
                 door: None,
+                exit: junction.and_then(|junction| junction.exit),
+                way: undecided.map(|it| if it.goes_back { "back" } else { "through" }),
+                alternatives,
+                doubt,
+                decided_by_world: possible.is_some_and(|it| it.decided_by_world.contains(&index)),
                 marker,
                 turned_back: std::mem::take(&mut turned_back),
                 length,

@@ -15,6 +15,7 @@ use toposlam_model::{
 use super::super::{
     check::{CheckedLog, LogSource},
     config::RunDriver,
+    divergence::DivergenceCause,
     events::{CheckedKind, UndecidedCause},
     extract::{Evidence, SkippedMessages},
     judgement::Judgement,
@@ -22,6 +23,7 @@ use super::super::{
     log_head::LogHead,
     marked_visits::AddedMarker,
     measured_hallways::MeasuredHallways,
+    possible_visits::PossibleVisits,
     twin::TwinWorld,
 };
 use super::events::PoseName;
@@ -36,6 +38,10 @@ pub struct Facts {
     pub images: u64,
     pub unreadable_images: u64,
     pub scans: u64,
+    /// The visits of a laser log as sets of percepts.
+    pub possible: Option<PossibleVisits>,
+    /// What does not fit in a laser log, and accuses nobody.
+    pub contradiction: Option<Contradiction>,
     pub skipped_messages: SkippedMessages,
     pub truncated: Option<Truncation>,
     /// The lines of a log of lines that are not read.
@@ -78,6 +84,17 @@ pub struct Facts {
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
     #[serde(skip)]
     pub drift: Option<f64>,
+}
+
+/// An event that does not fit, as the scans show it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Contradiction {
+    /// Its number, from 1; one more than there are at the end.
+    pub event: usize,
+    #[serde(skip)]
+    pub found: Option<CheckedKind>,
+    #[serde(serialize_with = "cause_name")]
+    pub cause: DivergenceCause,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -167,6 +184,12 @@ impl CheckedLog {
             images: extracted.images,
             unreadable_images: extracted.unreadable,
             scans: extracted.scans,
+            possible: judgement.possible.clone(),
+            contradiction: judgement.contradiction.as_ref().map(|found| Contradiction {
+                event: found.event + 1,
+                found: judgement.events.events.get(found.event).map(|event| event.kind.clone()),
+                cause: found.cause.clone(),
+            }),
             skipped_messages: extracted.skipped,
             truncated: source.log.truncation().cloned(),
             skipped_lines: source.log.skipped().cloned(),
@@ -295,6 +318,10 @@ impl From<&PartialMap> for MapSize {
             unexplored,
         }
     }
+}
+
+fn cause_name<S: Serializer>(cause: &DivergenceCause, serializer: S) -> Result<S::Ok, S::Error> {
+    cause.name().serialize(serializer)
 }
 
 /// A fiducial is no field.

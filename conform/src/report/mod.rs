@@ -15,7 +15,9 @@ use toposlam_model::{
 
 pub(super) use events::MarkerSeen;
 pub use events::{EventPose, PoseName, ReportedEvent, ReportedVisit};
-pub use facts::{ComparedDoors, Facts, MapSize, OpenDoor, RecordedWorld, SmallestFound, WorldFact};
+pub use facts::{
+    ComparedDoors, Contradiction, Facts, MapSize, OpenDoor, RecordedWorld, SmallestFound, WorldFact,
+};
 
 use super::{
     check::{CheckedLog, LogSource},
@@ -184,7 +186,7 @@ impl CheckedLog {
         LogReport {
             log,
             verdict: judgement.verdict(),
-            visits: ReportedVisit::all(&self.extracted.events),
+            visits: ReportedVisit::all(&self.extracted, judgement.possible.as_ref()),
             divergence: divergence.map(|divergence| self.divergence_report(source, divergence)),
             matched: matched.unwrap_or(events.len()),
             candidates: judgement.candidates(),

@@ -83,7 +83,7 @@ fn what_comes_after_an_unrecognised_junction_is_not_checked() {
         arrival_at(&mut events, at + 1).degree += 5;
         let judgement = judged(&events, &config);
         assert_eq!((judgement.unrecognised, &judgement.divergence), (Some(at), &None));
-        assert_eq!(judgement.verdict(), ConformVerdict::Incomplete);
+        assert_eq!(judgement.verdict(), ConformVerdict::NotKnown);
         assert_eq!(judgement.events, events);
         let before = judged(&good.up_to(at - 1), &config);
         assert_eq!((judgement.trace, judgement.coverage), (before.trace, before.coverage));

@@ -94,7 +94,7 @@ fn a_robot_that_got_lost_may_be_anywhere_in_its_world() {
     let lost = judgement.lost.unwrap();
     // What comes after it is checked in a known world, and in no other.
     let unknown = judged(&events, &ConformConfig { world: None, ..known.clone() });
-    assert_eq!((unknown.verdict(), unknown.divergence), (ConformVerdict::Incomplete, None));
+    assert_eq!((unknown.verdict(), unknown.divergence), (ConformVerdict::NotKnown, None));
     let poses = judgement.poses.unwrap();
     assert!(poses.left[lost - 1] == 1 && poses.left[lost] > 1, "{:?}", poses.left);
     assert_eq!(poses.left.last(), Some(&1));

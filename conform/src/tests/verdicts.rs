@@ -225,7 +225,7 @@ proptest! {
         prop_assert_eq!(&judgement.divergence, &None);
         let complete = !is_cut && judgement.is_decided();
         let expected =
-            if complete { ConformVerdict::Conforms } else { ConformVerdict::Incomplete };
+            if complete { ConformVerdict::Conforms } else { ConformVerdict::NotKnown };
         prop_assert_eq!(judgement.verdict(), expected);
         let with_quirk = judge(events.clone(), &config, &quirk, &()).unwrap();
         prop_assert_eq!((with_quirk.verdict(), with_quirk.tolerated.len()), (expected, 0));
@@ -410,7 +410,7 @@ fn a_limit_is_not_a_divergence() {
     ] {
         let judgement = judged(&events, &config);
         let found = (judgement.verdict(), &judgement.divergence);
-        assert_eq!(found, (ConformVerdict::Incomplete, &None));
+        assert_eq!(found, (ConformVerdict::NotKnown, &None));
         assert_eq!(judgement.limits().last(), Some(&limit));
     }
 }
@@ -496,7 +496,7 @@ fn a_driver_may_turn_back_but_not_find_another_junction_then() {
     let walk = bare_events([arrival(3), bare_door(1), CheckedKind::TurnedBack, unclear]);
     let judgement = judged(&walk.without_excursions(), &by_anyone());
     assert_eq!((judgement.unrecognised, &judgement.divergence), (Some(3), &None));
-    assert_eq!(judgement.verdict(), ConformVerdict::Incomplete);
+    assert_eq!(judgement.verdict(), ConformVerdict::NotKnown);
 }
 
 /// An arrival with two or three doors that sees the marker along one.

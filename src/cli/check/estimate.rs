@@ -136,7 +136,7 @@ struct EstimateLine<'a> {
 }
 
 impl EstimateOptions {
-    /// Prints the estimate for one number of edges. It is incomplete if no probe found a start.
+    /// Prints the estimate for one number of edges. It is not known if no probe found a start.
     pub(super) fn print(
         &self,
         (edges, sweep): (usize, &SharedPrefixCheck),

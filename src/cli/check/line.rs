@@ -232,12 +232,10 @@ impl SizeLine {
             () if self.failed > 0 || is_some(self.below_certificate) => {
                 (Outcome::Violated, "violated")
             }
-            () if self.interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
-            () if self.starts == 0 => {
-                (Outcome::Incomplete, "incomplete: there is nothing to check")
-            }
+            () if self.interrupted => (Outcome::Incomplete, "not known, interrupted"),
+            () if self.starts == 0 => (Outcome::Incomplete, "not known: there is nothing to check"),
             () if is_some(self.gave_up) || is_some(self.unknown) || self.stopped == Some(true) => {
-                (Outcome::Incomplete, "incomplete")
+                (Outcome::Incomplete, "not known")
             }
             () => (Outcome::Holds, "holds"),
         }

@@ -26,7 +26,7 @@ pub(super) fn write(path: &Path, log: &Path, judged: &JudgedLog) -> Result<(), C
     let verdict = match judged.checked.judgement.verdict() {
         ConformVerdict::Conforms => "conforms",
         ConformVerdict::Diverged => "diverges",
-        ConformVerdict::Incomplete => "is incomplete",
+        ConformVerdict::NotKnown => "is not known to conform",
     };
     let count = counted(picture.visits.len(), "visit");
     picture.caption = format!("{count} of junctions; the log {verdict}");

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use toposlam_conform::{
-    ConformReports, DivergenceReport, LogReport, ReportedEvent, ToleratedQuirk, words,
+    ConformReports, DivergenceReport, LogReport, ReportedEvent, RunDriver, ToleratedQuirk, words,
 };
 
 use crate::cli::text::{counted, grouped, print_command, print_hanging, since_start};
@@ -25,7 +25,10 @@ pub(super) fn print(out: &mut dyn Write, report: &LogReport) -> io::Result<()> {
     for (name, fact) in words::facts(report) {
         print_fact(out, name, &fact)?;
     }
-    print_fact(out, "covered", &words::covered(&report.coverage))?;
+    // Of a robot that no algorithm drove, no case is expected.
+    if report.driver != RunDriver::Anyone || report.coverage.iter().any(|case| case.count > 0) {
+        print_fact(out, "covered", &words::covered(&report.coverage))?;
+    }
     for ToleratedQuirk { name, reason, events } in &report.tolerated {
         let times = words::times(events.len());
         print_fact(out, "tolerated", &format!("{name}, {times}: {reason}"))?;

@@ -118,6 +118,9 @@ params! {
         /// An arm that is seen to end nearer than this, along the free space from the junction's centre, does not count.
         /// Geometry: rooms and entrances are less deep.
         min_arm: f64 = 10.0,
+        /// A way as wide as a corridor that is not seen to end is a possible arm from this length on. Geometry: shorter
+        /// ones are niches.
+        min_possible: f64 = 4.0,
         /// An arm counts if free space is seen this far on a straight line from the junction's centre.
         /// Geometry: what is left to [`Self::min_arm`] are the cells at both ends.
         sight: f64 = 9.5,
@@ -211,8 +214,8 @@ params! {
         agree: f64 = 0.4,
         /// ... or in this part, if the robot came or left by it, ... Logs.
         traversed: f64 = 0.25,
-        /// ... and the visit is undecided if the part is as near as this to [`Self::agree`]. Logs.
-        doubt: f64 = 0.02,
+        /// ... and it is possible if the part is as near as this to [`Self::agree`]. Logs.
+        doubt: f64 = 0.2,
         /// An arm in doubt matters if it is in so many views of a junction. Logs.
         doubted_views: usize = 2,
         /// A junction that was not seen on this length of the way is forgotten. Geometry: odometry drifts.

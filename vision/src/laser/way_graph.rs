@@ -286,21 +286,24 @@ impl WayGraph {
         let widest = widths.fold(width, f64::max);
         let [less, more] = walled;
         let is_walled = more >= params.min_wall || less >= params.min_walls;
-        let is_arm = depth >= params.min_sight
+        let leads_on = width >= params.min_width
+            && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
+        let is_arm = leads_on
+            && depth >= params.min_sight
             && (is_walled || known >= params.long)
             && known >= params.min_known
-            && width >= params.min_width
-            && widest <= params.max_width
-            && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
+            && widest <= params.max_width;
         let is_unseen = || {
             let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, map);
             viewpoints.iter().filter_map(turn).any(|turn| turn >= params.unseen_turn)
         };
-        if is_arm {
+        // A way as wide as a corridor that leads on, or seems to.
+        let is_possible = leads_on && width <= params.max_width && known >= params.min_possible;
+        if is_arm || is_possible {
             let UnseenBorder { hidden, aside } = judge.unseen_border(leaf.point);
             // What is seen to end may go on around a corner.
             let likely = if end.kind == WayEnd::Open { hidden + aside } else { hidden };
-            if likely >= params.border {
+            if is_arm && likely >= params.border {
                 return ArmStatus::Likely;
             }
             if hidden + aside >= params.border {

@@ -503,6 +503,7 @@ impl<S: Copy + Default> MappedRule<S> {
             let clockwise = |arm: &PlaceArm| (entry - arm.direction).rem_euclid(TAU);
             arms.sort_by(|one, other| clockwise(one).total_cmp(&clockwise(other)));
         }
+        let goes_back = stay.exit.is_some_and(|(exit, _)| self.is_same(entry, exit));
         let turn = stay.odometry_from_map.rotation.angle();
         for arm in &mut arms {
             arm.direction = wrapped(arm.direction + turn);
@@ -520,6 +521,7 @@ impl<S: Copy + Default> MappedRule<S> {
             arms,
             least_degree: if self.params.corner.corners { 1 } else { 3 },
             exit,
+            goes_back,
             doubt,
             ..Visit::default()
         };

@@ -34,6 +34,8 @@ pub struct Visit<S> {
     pub least_degree: usize,
     /// How the robot left; `None` if the log ends there.
     pub exit: Option<VisitExit<S>>,
+    /// Whether it left the way that it came.
+    pub goes_back: bool,
     pub doubt: Option<UndecidedCause>,
     /// `None` if the sensor sees any shape.
     pub shape: Option<JunctionShape>,
@@ -71,6 +73,16 @@ pub enum UndecidedCause {
     UnseenArm,
     /// The robot drove in a direction in which the laser scanner did not look.
     UnseenWay,
+}
+
+impl UndecidedCause {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Unclear => "unclear",
+            Self::UnseenArm => "unseen-arm",
+            Self::UnseenWay => "unseen-way",
+        }
+    }
 }
 
 impl<S> VisitLog<S> {

@@ -160,7 +160,7 @@ function finish() {
   if (!names.has(current().number)) nameCurrent();
   const right = fault === null;
   const proved = right && determinesWorld(percepts, doors);
-  find(".verdict").className = `verdict ${!right ? "diverged" : proved ? "conforms" : "incomplete"}`;
+  find(".verdict").className = `verdict ${!right ? "diverged" : proved ? "conforms" : "not-known"}`;
   write("#result-heading", !right ? "Wrong map" : proved ? "Right, and proved" : "Right, but guessed");
   write(".reason", right ? rightText(proved) : faultText(fault));
   compare(right);

@@ -68,7 +68,7 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
         &format!(
             "{}<strong>{}</strong> <span class=\"of\">{}</span>",
             sign(report.verdict),
-            sentence(name).trim_end_matches('.'),
+            sentence(report.verdict.in_words()).trim_end_matches('.'),
             escaped(&report.log),
         ),
     );

@@ -34,7 +34,7 @@ pub fn conform_page(reports: &ConformReports, origin: &ReportOrigin) -> String {
         _ => None,
     };
     let level = if alone.is_some() { Level::First } else { Level::Second };
-    let title = alone.map(|report| format!("{}: {}", report.log, report.verdict.name()));
+    let title = alone.map(|report| format!("{}: {}", report.log, report.verdict.in_words()));
     let together = if alone.is_some() { String::new() } else { summary(reports) };
     let logs = reports.logs.iter().zip(1..);
     let logs = each(logs, |(report, number)| log::section(report, number, level));
@@ -147,7 +147,7 @@ fn summary(reports: &ConformReports) -> String {
 
 /// A log that could not be checked.
 fn unread_row(UnreadLog { log, cause }: &UnreadLog) -> String {
-    let verdict = ConformVerdict::Incomplete;
+    let verdict = ConformVerdict::NotKnown;
     format!(
         "<tr><th scope=\"row\">{}</th><td class=\"is {}\">{}not checked</td><td>{}</td><td></td></tr>\n",
         escaped(log),
@@ -169,15 +169,16 @@ fn row(report: &LogReport, number: usize) -> String {
     };
     format!(
         "<tr><th scope=\"row\"><a href=\"#log-{number}\">{}</a></th>\
-         <td class=\"is {verdict}\">{}{verdict}</td><td>{why}</td>\
+         <td class=\"is {verdict}\">{}{}</td><td>{why}</td>\
          <td class=\"right number\">{}</td></tr>\n",
         escaped(&report.log),
         sign(report.verdict),
+        report.verdict.in_words(),
         grouped(report.events.len() as u128),
     )
 }
 
-/// The worst verdict; incomplete without any log, with an unreadable one, or without a required case.
+/// The worst verdict; not known without any log, with an unreadable one, or without a required case.
 fn worst(reports: &ConformReports) -> ConformVerdict {
     let any = |verdict| reports.count(verdict) > 0;
     let is_missing = reports.logs.is_empty() || !reports.unread.is_empty();
@@ -185,8 +186,8 @@ fn worst(reports: &ConformReports) -> ConformVerdict {
         reports.required.as_ref().is_some_and(|required| !required.not_covered.is_empty());
     if any(ConformVerdict::Diverged) {
         ConformVerdict::Diverged
-    } else if any(ConformVerdict::Incomplete) || is_missing || is_uncovered {
-        ConformVerdict::Incomplete
+    } else if any(ConformVerdict::NotKnown) || is_missing || is_uncovered {
+        ConformVerdict::NotKnown
     } else {
         ConformVerdict::Conforms
     }
@@ -201,7 +202,7 @@ fn tally(reports: &ConformReports) -> String {
     let many = if reports.count(ConformVerdict::Conforms) > 1 { "conform" } else { "conforms" };
     let parts: Vec<_> = [
         (reports.count(ConformVerdict::Diverged), "diverged"),
-        (reports.count(ConformVerdict::Incomplete), "incomplete"),
+        (reports.count(ConformVerdict::NotKnown), "not known"),
         (reports.count(ConformVerdict::Conforms), many),
         (unread.len(), "not checked"),
     ]
@@ -233,7 +234,7 @@ fn strokes(verdict: ConformVerdict) -> &'static str {
     match verdict {
         ConformVerdict::Conforms => "M4 13l5.5 5.5L20 6",
         ConformVerdict::Diverged => "M5.5 5.5l13 13m0-13l-13 13",
-        ConformVerdict::Incomplete => "M4.5 12h.01M12 12h.01M19.5 12h.01",
+        ConformVerdict::NotKnown => "M4.5 12h.01M12 12h.01M19.5 12h.01",
     }
 }
 
@@ -250,7 +251,7 @@ fn icon(verdict: ConformVerdict) -> String {
     let (ground, ink) = match verdict {
         ConformVerdict::Conforms => ("#00684f", "#fff"),
         ConformVerdict::Diverged => ("#b23a00", "#fff"),
-        ConformVerdict::Incomplete => ("#ffcf33", "#2b2100"),
+        ConformVerdict::NotKnown => ("#ffcf33", "#2b2100"),
     };
     let svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-4 -4 32 32\">\

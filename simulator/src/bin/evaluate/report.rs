@@ -78,8 +78,8 @@ impl MeasurementEnd {
         match (outcome, self) {
             (Outcome::Holds, _) => holds,
             (Outcome::Violated, _) => violated,
-            (_, Self::Empty) => "incomplete: nothing was measured",
-            (_, Self::Interrupted) => "incomplete, interrupted",
+            (_, Self::Empty) => "not known: nothing was measured",
+            (_, Self::Interrupted) => "not known, interrupted",
             _ => not_shown,
         }
     }

@@ -1,0 +1,175 @@
+//! The visits of a laser log, judged as sets of what the scans cannot exclude. Section 2.1.
+//!
+//! That an arm is there, or is not, is a fact if the robot drove it. What scans show beyond that may be wrong in one visit
+//! of many, so it may support that a log conforms, and accuses nobody: a log whose visits fit no world is not known.
+
+use serde::Serialize;
+use toposlam_model::{
+    marker::{Directional, Marker, NoMarker},
+    percept::{Door, Percept, Sighting},
+    visits::{Explanation, VisitAlternative, VisitSet, VisitWay, explain, states_after},
+};
+use toposlam_vision::visits::VisitPercept;
+
+use super::{
+    config::{ConformConfig, RunDriver},
+    events::{CheckedKind, RunEvents, UndecidedCause},
+    marked_visits::VisitedJunction,
+};
+
+/// The visits of a log, and whether some choice of their percepts fits.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct PossibleVisits {
+    pub visits: usize,
+    /// Those of which the scans leave one percept.
+    pub certain: usize,
+    /// Those of which the scans leave several percepts and the known world one, counted from 0.
+    pub decided_by_world: Vec<usize>,
+    pub fit: VisitFit,
+    /// Whether the robot may have taken any doors: those of an algorithm depend on the percepts.
+    #[serde(skip)]
+    by_anyone: bool,
+}
+
+/// Whether some choice of percepts fits the known world, or some world if none is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum VisitFit {
+    Fits,
+    /// None does.
+    Contradiction,
+    /// The robot drove where its scanner did not look. It may have passed any number of junctions there.
+    UnseenWay,
+    /// A world would explain any visits: there is no marker, and the robot never turned back.
+    Anything,
+    #[default]
+    NotKnown,
+}
+
+/// The largest number of steps in which a choice is searched for.
+const MOST_STEPS: usize = 1_000_000;
+/// More doors than this are not expected at a junction of which nothing is known.
+const MOST_DOORS: u32 = 8;
+/// A log conforms only if at least this part of its visits is certain: two thirds.
+const CERTAIN_PART: [usize; 2] = [2, 3];
+
+impl PossibleVisits {
+    /// Judges visits with the events that were inferred from them.
+    pub(super) fn judge(
+        events: &RunEvents,
+        junctions: &[VisitedJunction],
+        config: &ConformConfig,
+    ) -> Self {
+        let by_anyone = config.driver == RunDriver::Anyone;
+        let sets = visit_sets(events, junctions, config.marker);
+        let of_junctions: Vec<usize> =
+            (0..sets.len()).filter(|&set| sets[set] != VisitSet::turned_back()).collect();
+        let certain = of_junctions.iter().filter(|&&set| sets[set].is_certain()).count();
+        let mut judged = Self { visits: of_junctions.len(), certain, by_anyone, ..Self::default() };
+        let unseen_way = CheckedKind::Undecided(UndecidedCause::UnseenWay);
+        if events.events.iter().any(|event| event.kind == unseen_way) {
+            return Self { fit: VisitFit::UnseenWay, ..judged };
+        }
+        let is_marked = config.marker.name() == Directional.name();
+        if let Some(known) = &config.world {
+            let fits = |sets: &[VisitSet]| {
+                let after = states_after(&known.graph, &config.marker, &known.states, sets);
+                after.len() == sets.len() && after.last().is_none_or(|states| !states.is_empty())
+            };
+            judged.fit = if fits(&sets) { VisitFit::Fits } else { VisitFit::Contradiction };
+            let mut only = sets.clone();
+            let mut is_decided = |set: usize| {
+                let mut one = |&alternative: &_| {
+                    only[set] = VisitSet::new([alternative], sets[set].way());
+                    fits(&only)
+                };
+                let left = sets[set].alternatives().iter().filter(|it| one(it)).count();
+                only[set].clone_from(&sets[set]);
+                left == 1 && !sets[set].is_certain()
+            };
+            let numbered = of_junctions.iter().enumerate();
+            judged.decided_by_world =
+                numbered.filter(|&(_, &set)| is_decided(set)).map(|(number, _)| number).collect();
+        } else if is_marked || config.marker.name() == NoMarker.name() {
+            let may_contradict = is_marked || sets.iter().any(|set| set.way() == VisitWay::Back);
+            judged.fit = match explain(&sets, is_marked, MOST_STEPS) {
+                Explanation::Explained(_) if may_contradict => VisitFit::Fits,
+                Explanation::Explained(_) => VisitFit::Anything,
+                Explanation::Impossible { .. } => VisitFit::Contradiction,
+                Explanation::NotKnown => VisitFit::NotKnown,
+            };
+        }
+        judged
+    }
+
+    /// Whether so many visits are certain that a choice that fits says something.
+    pub fn is_certain_enough(&self) -> bool {
+        let [least, of] = CERTAIN_PART;
+        self.visits > 0 && of * self.certain >= least * self.visits
+    }
+
+    /// Whether any log of such a robot would fit.
+    pub(super) fn says_nothing(&self) -> bool {
+        self.by_anyone && self.fit == VisitFit::Anything
+    }
+
+    /// Whether the visits conform, as sets.
+    pub(super) fn conform(&self) -> bool {
+        self.by_anyone && self.fit == VisitFit::Fits && self.is_certain_enough()
+    }
+}
+
+/// The visits as sets, in order, with the places where the robot turned back between them.
+fn visit_sets(
+    events: &RunEvents,
+    junctions: &[VisitedJunction],
+    marker: &dyn Marker,
+) -> Vec<VisitSet> {
+    let mut sets = Vec::new();
+    let mut junctions = junctions.iter().peekable();
+    for (index, event) in events.events.iter().enumerate() {
+        match &event.kind {
+            CheckedKind::TurnedBack => sets.push(VisitSet::turned_back()),
+            CheckedKind::Arrival { .. } | CheckedKind::Undecided(_) => {
+                let junction = junctions.next_if(|junction| junction.event == index);
+                let sighting = event.arrival().and_then(|arrival| arrival.sighting);
+                sets.extend(junction.map(|junction| visit_set(junction, sighting, marker)));
+            }
+            CheckedKind::Door { .. } | CheckedKind::LeftBetweenDoors { .. } => {}
+        }
+    }
+    sets
+}
+
+fn visit_set(
+    junction: &VisitedJunction,
+    sighting: Option<Sighting>,
+    marker: &dyn Marker,
+) -> VisitSet {
+    let VisitedJunction { alternatives, goes_back, .. } = junction;
+    let way = if *goes_back { VisitWay::Back } else { VisitWay::Through };
+    let anything = (1..=MOST_DOORS).flat_map(|degree| {
+        let doors = if *goes_back { 0..1 } else { 1..degree };
+        doors.map(move |door| Some(VisitPercept { degree, door: Some(door) }))
+    });
+    let anything = || anything.chain([None]).collect();
+    let seen = if alternatives.is_empty() { anything() } else { alternatives.clone() };
+    let with_sightings = seen.into_iter().flat_map(|seen| {
+        let Some(VisitPercept { degree, door }) = seen else { return vec![None] };
+        let door = door.map(Door);
+        let sightings = match sighting {
+            Some(sighting) => vec![sighting],
+            None if marker.name() == NoMarker.name() => vec![Sighting::Nothing],
+            None => {
+                let pointing = (0..degree).map(|door| Sighting::Pointing(Door(door)));
+                pointing.chain([Sighting::Nothing, Sighting::Lying(1)]).collect()
+            }
+        };
+        let with = |sighting| Percept { degree, sighting };
+        sightings
+            .into_iter()
+            .map(|sighting| Some(VisitAlternative { percept: with(sighting), door }))
+            .collect()
+    });
+    VisitSet::new(with_sightings, way)
+}
