@@ -1,7 +1,5 @@
 //! The exhaustive driver: every case within a bound.
 
-use std::fmt;
-
 use toposlam_model::enumerate::Watch;
 
 use crate::choose::{CaseResult, Choose, Stop, unless_it_panics};
@@ -101,14 +99,7 @@ pub struct Counterexample {
     pub cases: u64,
 }
 
-/// The choices are separated by commas, in the format of `--choices`.
-impl fmt::Display for Counterexample {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        write!(out, "it does not hold that {}; choices {}", self.claim, listed(&self.choices))
-    }
-}
-
-/// Numbers separated by commas.
+/// Choices, separated by commas, in the format of `--choices`.
 pub fn listed(choices: &[u8]) -> String {
     choices.iter().map(u8::to_string).collect::<Vec<_>>().join(",")
 }

@@ -7,6 +7,7 @@ mod tests;
 use std::{
     collections::BTreeSet,
     io::{self, Write},
+    mem,
 };
 
 use serde_json::{Value, json};
@@ -83,7 +84,10 @@ impl ProofsArguments {
         let named: Result<Vec<_>, _> = self.run.iter().map(|name| named(name, all)).collect();
         let (mut lemmas, mut names) = (named?.concat(), BTreeSet::new());
         lemmas.retain(|lemma| names.insert(lemma.name));
-        let mut report = Report::new(self.json, out);
+        let mut report = Report { text: out, json: &mut io::sink() };
+        if self.json {
+            mem::swap(&mut report.text, &mut report.json);
+        }
         match (&self.choices, lemmas.as_slice()) {
             (None, []) => report.list(all),
             (Some(choices), [lemma]) => report.case(lemma, choices),
@@ -96,7 +100,7 @@ impl ProofsArguments {
         let names = lemmas.iter().map(|lemma| lemma.name.len()).max().unwrap_or_default();
         let numbers = lemmas.iter().map(|lemma| in_cases(lemma.exhaustive.cases).len());
         let numbers = numbers.max().unwrap_or_default();
-        let mut checked = Vec::new();
+        let (mut checked, mut results) = (Vec::new(), Vec::new());
         for lemma in lemmas {
             let progress = Progress::new(lemma.name, "cases")?;
             let check = lemma.check(&progress);
@@ -104,8 +108,11 @@ impl ProofsArguments {
             let (outcome, word) = verdict(&check);
             let (name, number, seconds) = (lemma.name, in_cases(check.cases), check.seconds);
             writeln!(report.text, "{name:names$}  {number:>numbers$}  {seconds:>6.2} s  {word}")?;
-            print_line(&mut report.json, "check", &check_json(&check))?;
-            [&mut report.text, &mut report.json].into_iter().try_for_each(Write::flush)?;
+            print_line(report.json, "check", &check_json(&check, outcome))?;
+            report.text.flush()?;
+            report.json.flush()?;
+            let message = format!("{word} after {number}");
+            results.push(CiCase { name: name.to_owned(), outcome, message, file: None });
             checked.push(check);
             if outcome == Outcome::Incomplete {
                 break;
@@ -121,23 +128,22 @@ impl ProofsArguments {
                     let [pinned, found] = [*pinned, *cases].map(in_cases);
                     writeln!(report.text)?;
                     report.statement(lemma.name, lemma.sentence)?;
-                    report.fails(&format!("expected {pinned} within its bound, found {found}"))?;
+                    let cause = format!("expected {pinned} within its bound, found {found}");
+                    print_hanging(report.text, "  fails: ", &cause)?;
                 }
                 Some(LemmaFailure::Stopped) | None => {}
             }
         }
         let outcome = report.totals(lemmas.len(), &checked)?;
-        self.ci.write("proofs", &checked.iter().map(ci_case).collect::<Vec<_>>())?;
+        self.ci.write("proofs", &results)?;
         Ok(outcome)
     }
 }
 
 /// The lemma of this name, or else the only one whose name contains it; or all lemmas.
 fn named<'l>(name: &str, (lemmas, theorems): Statements<'l>) -> Result<Vec<&'l Lemma>, CliError> {
-    let is_named = |lemma: &&&Lemma| name == ALL || lemma.name == name;
-    let contains = |lemma: &&&Lemma| lemma.name.contains(name);
-    let exact: Vec<_> = lemmas.iter().filter(is_named).copied().collect();
-    let fitting: Vec<_> = lemmas.iter().filter(contains).copied().collect();
+    let exact: Vec<_> = lemmas.iter().copied().filter(|l| name == ALL || l.name == name).collect();
+    let fitting: Vec<_> = lemmas.iter().copied().filter(|l| l.name.contains(name)).collect();
     let (cause, listed) = match fitting.as_slice() {
         _ if !exact.is_empty() => return Ok(exact),
         _ if theorems.iter().any(|theorem| theorem.name == name) => {
@@ -160,8 +166,7 @@ fn verdict(check: &LemmaCheck) -> (Outcome, &'static str) {
     }
 }
 
-fn check_json(check: &LemmaCheck) -> Value {
-    let (outcome, _) = verdict(check);
+fn check_json(check: &LemmaCheck, outcome: Outcome) -> Value {
     let mut line = json!({
         "lemma": check.lemma.name, "cases": check.cases, "seconds": check.seconds,
         "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds, "choices": null,
@@ -178,28 +183,13 @@ fn check_json(check: &LemmaCheck) -> Value {
     line
 }
 
-/// The result for CI systems.
-fn ci_case(check: &LemmaCheck) -> CiCase {
-    let (outcome, word) = verdict(check);
-    let message = format!("{word} after {}", in_cases(check.cases));
-    CiCase { name: check.lemma.name.to_owned(), outcome, message, file: None }
-}
-
 /// The output as text and as JSON; one of the two goes nowhere.
 struct Report<'o> {
-    text: Box<dyn Write + 'o>,
-    json: Box<dyn Write + 'o>,
+    text: &'o mut dyn Write,
+    json: &'o mut dyn Write,
 }
 
-impl<'o> Report<'o> {
-    fn new(json: bool, out: &'o mut dyn Write) -> Self {
-        if json {
-            Self { text: Box::new(io::sink()), json: Box::new(out) }
-        } else {
-            Self { text: Box::new(out), json: Box::new(io::sink()) }
-        }
-    }
-
+impl Report<'_> {
     /// Prints the lemmas and the theorems, and their numbers.
     fn list(&mut self, (lemmas, theorems): Statements) -> Result<Outcome, CliError> {
         for lemma in lemmas {
@@ -211,35 +201,35 @@ impl<'o> Report<'o> {
             self.rows(sampled.map(|sampled| ("sampled", sampled.bound)))?;
             self.rows(kani.as_deref().map(|kani| ("Kani", kani)))?;
             writeln!(self.text)?;
-            print_line(&mut self.json, "lemma", lemma)?;
+            print_line(self.json, "lemma", lemma)?;
         }
         for theorem in theorems {
             let Theorem { name, sentence, paper, file, coq } = theorem;
             self.statement(name, sentence)?;
             self.rows([("paper", paper.as_str()), ("file", *file), ("Coq", coq.bound)])?;
             writeln!(self.text)?;
-            print_line(&mut self.json, "theorem", theorem)?;
+            print_line(self.json, "theorem", theorem)?;
         }
         self.rows(ENGINES)?;
-        let cases = lemmas.iter().map(|lemma| lemma.exhaustive.cases).sum();
+        let cases: u64 = lemmas.iter().map(|lemma| lemma.exhaustive.cases).sum();
         let bounded =
             format!("{}, {} within bounds", counted(lemmas.len(), "lemma"), in_cases(cases));
         let proved = format!("{} for every world", counted(theorems.len(), "theorem"));
         writeln!(self.text)?;
-        print_paragraph(&mut self.text, &format!("{bounded}; {proved}"))?;
+        print_paragraph(self.text, &format!("{bounded}; {proved}"))?;
         let totals = json!({
             "lemmas": lemmas.len(), "theorems": theorems.len(), "cases": cases,
             "sampled": lemmas.iter().filter(|lemma| lemma.sampled.is_some()).count(),
             "kani": lemmas.iter().filter(|lemma| lemma.kani.is_some()).count(),
         });
-        print_line(&mut self.json, "lemmas", &totals)?;
+        print_line(self.json, "lemmas", &totals)?;
         Ok(Outcome::Holds)
     }
 
     fn totals(&mut self, lemmas: usize, checked: &[LemmaCheck]) -> Result<Outcome, CliError> {
         let count = |outcome| checked.iter().filter(|check| verdict(check).0 == outcome).count();
         let sound = checked.iter().filter(|check| verdict(check).0 != Outcome::Violated);
-        let cases = sound.map(|check| check.cases).sum();
+        let cases: u64 = sound.map(|check| check.cases).sum();
         let (outcome, word, end) = match [Outcome::Violated, Outcome::Incomplete].map(count) {
             [0, 0] => (Outcome::Holds, "holds", ""),
             [0, _] => (Outcome::Incomplete, "incomplete, interrupted", " held"),
@@ -252,7 +242,7 @@ impl<'o> Report<'o> {
             "interrupted": outcome == Outcome::Incomplete, "verdict": outcome.verdict(),
             "holds": outcome == Outcome::Holds,
         });
-        print_line(&mut self.json, "checks", &line)?;
+        print_line(self.json, "checks", &line)?;
         let left =
             if not_checked > 0 { format!("; {not_checked} not checked") } else { String::new() };
         let (lemmas, cases) = (counted(lemmas, "lemma"), in_cases(cases));
@@ -262,15 +252,11 @@ impl<'o> Report<'o> {
 
     fn statement(&mut self, name: &str, sentence: &str) -> io::Result<()> {
         writeln!(self.text, "{name}")?;
-        print_hanging(&mut self.text, "  ", sentence)
-    }
-
-    fn fails(&mut self, cause: &str) -> io::Result<()> {
-        print_hanging(&mut self.text, "  fails: ", cause)
+        print_hanging(self.text, "  ", sentence)
     }
 
     fn rows<'t>(&mut self, rows: impl IntoIterator<Item = (&'t str, &'t str)>) -> io::Result<()> {
-        let print = |(label, text)| print_hanging(&mut self.text, &format!("  {label:10}  "), text);
+        let print = |(label, text)| print_hanging(self.text, &format!("  {label:10}  "), text);
         rows.into_iter().try_for_each(print)
     }
 }

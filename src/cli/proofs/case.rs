@@ -23,29 +23,28 @@ impl Report<'_> {
         let (engine, made) = lemma
             .replay(choices)
             .map_err(|misfit| CliError::at(format!("--choices: {}", lemma.name), misfit))?;
-        let (outcome, word, verdict, claim) = match made.case {
-            Ok(()) => (Outcome::Holds, "holds", "holds: the lemma holds in", None),
-            Err(Stop::Fails(claim)) => {
-                (Outcome::Violated, "fails", "violated: the lemma fails in", Some(claim))
-            }
+        let (outcome, word, verdict) = match made.case {
+            Ok(()) => (Outcome::Holds, "holds", "holds: the lemma holds in"),
+            Err(Stop::Fails(_)) => (Outcome::Violated, "fails", "violated: the lemma fails in"),
             Err(Stop::Excluded) => {
-                (Outcome::Incomplete, "excluded", "incomplete: the lemma excludes", None)
+                (Outcome::Incomplete, "excluded", "incomplete: the lemma excludes")
             }
         };
         self.statement(lemma.name, lemma.sentence)?;
+        let claim = if let Err(Stop::Fails(claim)) = made.case { Some(claim) } else { None };
         if let Some(claim) = claim {
-            self.fails(&format!("it is not true that {claim}"))?;
+            print_hanging(self.text, "  fails: ", &format!("it is not true that {claim}"))?;
         }
         let again = format!("toposlam proofs --run {} --choices {}", lemma.name, listed(choices));
-        print_command(&mut self.text, "  again: ", again.trim_end())?;
-        let [worlds, walks, values] = print_exhibits(lemma.name, &made.exhibits, &mut self.text)?;
+        print_command(self.text, "  again: ", again.trim_end())?;
+        let [worlds, walks, values] = print_exhibits(lemma.name, &made.exhibits, self.text)?;
         writeln!(self.text, "\n{verdict} this case")?;
         let line = json!({
             "lemma": lemma.name, "engine": engine, "choices": choices, "verdict": word,
             "holds": outcome == Outcome::Holds, "claim": claim, "worlds": worlds, "walks": walks,
             "values": values,
         });
-        print_line(&mut self.json, "case", &line)?;
+        print_line(self.json, "case", &line)?;
         Ok(outcome)
     }
 }
@@ -65,11 +64,9 @@ fn print_exhibits(
         match exhibit {
             Exhibit::World { graph, facing } => {
                 let number = worlds.len() + 1;
-                let (label, name) = if is_only_one {
-                    ("the world".to_owned(), "case".to_owned())
-                } else {
-                    (format!("world {number}"), format!("case-{number}"))
-                };
+                let name = if is_only_one { "case".into() } else { format!("case-{number}") };
+                let label =
+                    if is_only_one { "the world".into() } else { format!("world {number}") };
                 let about = format!("A case of {lemma}");
                 let world = NamedWorld::numbered(&name, &about, graph.clone(), Some(*facing));
                 let head = capital(&label);
