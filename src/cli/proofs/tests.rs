@@ -308,11 +308,9 @@ fn a_check_can_be_stopped() {
         ("--json", "\"interrupted\":true,\"verdict\":\"not-known\",\"holds\":false}\n"),
     ] {
         let mut out = Vec::new();
-        let mut report = Report { text: &mut io::sink(), json: &mut io::sink() };
-        if options.is_empty() {
-            report.text = &mut out
-        } else {
-            report.json = &mut out
+        let mut report = Report { text: &mut out, json: &mut io::sink() };
+        if options == "--json" {
+            mem::swap(&mut report.text, &mut report.json);
         }
         let outcome = report.totals(2, &[many.check(&AtOnce)]);
         assert_eq!(outcome.unwrap(), Outcome::Incomplete);
