@@ -1,13 +1,14 @@
 //! Lemmas and their declaration.
 
-use std::ops::ControlFlow;
+use std::time::Instant;
 
 use serde::Serialize;
+use toposlam_model::enumerate::Watch;
 
 use crate::{
     bytes::Bytes,
-    choose::CaseResult,
-    odometer::{ChoiceOdometer, Counterexample},
+    choose::{CaseResult, Stop},
+    odometer::{ChoiceOdometer, Counterexample, PROGRESS},
     replay::{CaseReplay, ChoicesError, ReplayedCase},
 };
 
@@ -68,50 +69,71 @@ pub struct Kani {
     pub harness: &'static str,
 }
 
+/// The result of the exhaustive check of a lemma.
+#[derive(Clone, Debug)]
+pub struct LemmaCheck<'l> {
+    pub lemma: &'l Lemma,
+    /// The number of cases in which it holds, before the first one in which it fails.
+    pub cases: u64,
+    pub seconds: f64,
+    pub failure: Option<LemmaFailure>,
+}
+
 /// The reason why the exhaustive check of a lemma fails.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LemmaFailure {
     /// The lemma fails in a case.
     Case(Counterexample),
-    /// The number of cases is wrong.
-    Cases { pinned: u64, found: u64 },
-    /// The check was ended after so many cases.
-    Stopped(u64),
+    /// The number of cases is wrong; it must be this one, and at least 1.
+    Cases { pinned: u64 },
+    /// The check was stopped.
+    Stopped,
 }
 
+/// The engines, and how to run each.
+pub const ENGINES: [(&str, &str); 4] = [
+    ("exhaustive", "every case within the bound: toposlam proofs --run NAME, or --run all"),
+    ("sampled", "random cases within the bound: cargo test -p toposlam-proofs"),
+    (
+        "Kani",
+        "every case within the bound, symbolically: proofs/kani/verify, if Kani is installed; \
+         neither this program nor cargo test runs it, and this list does not contain its results",
+    ),
+    (
+        "Coq",
+        "every world, without a bound: proofs/coq/check, if Coq is installed; cargo test -p \
+         toposlam-proofs runs it too, this program does not",
+    ),
+];
+
 impl Lemma {
-    /// Checks the lemma on every case within its bound, and returns their number. It reports the number so
-    /// far to `progress` from time to time, which can end it.
-    ///
-    /// # Errors
-    /// Returns the first case in which the lemma fails, or an error if the number of cases is wrong, or if
-    /// the check was ended.
-    pub fn check(
-        &self,
-        progress: &mut impl FnMut(u64) -> ControlFlow<()>,
-    ) -> Result<u64, LemmaFailure> {
+    /// Checks the lemma on every case within its bound.
+    pub fn check(&self, watch: &dyn Watch) -> LemmaCheck<'_> {
+        let start = Instant::now();
         let Exhaustive { body, cases: pinned, .. } = self.exhaustive;
-        let mut ended = ControlFlow::Continue(());
-        let cases = ChoiceOdometer::exhaust(body, &mut |so_far| {
-            ended = progress(so_far);
-            ended
-        });
-        match cases {
-            Err(counterexample) => Err(LemmaFailure::Case(counterexample)),
-            Ok(found) if ended.is_break() => Err(LemmaFailure::Stopped(found)),
-            Ok(found) if found != pinned || found == 0 => {
-                Err(LemmaFailure::Cases { pinned, found })
-            }
-            Ok(found) => Ok(found),
-        }
+        watch.parts((pinned / PROGRESS) as usize);
+        let (cases, failure) = match ChoiceOdometer::exhaust(body, watch) {
+            Err(case) => (case.cases, Some(LemmaFailure::Case(case))),
+            Ok(found) if found == pinned && found > 0 => (found, None),
+            Ok(found) if watch.stop() => (found, Some(LemmaFailure::Stopped)),
+            Ok(found) => (found, Some(LemmaFailure::Cases { pinned })),
+        };
+        LemmaCheck { lemma: self, cases, seconds: start.elapsed().as_secs_f64(), failure }
     }
 
-    /// Makes one case of the exhaustive check again.
+    /// Makes a case again, and returns it after the name of the engine within whose bound it is. Of two engines it is
+    /// the one in which the lemma fails, or else the exhaustive one.
     ///
     /// # Errors
     /// Returns an error if the choices are not those of a case.
-    pub fn replay(&self, choices: &[u8]) -> Result<ReplayedCase, ChoicesError> {
-        CaseReplay::show(self.exhaustive.replay, choices)
+    pub fn replay(&self, choices: &[u8]) -> Result<(&'static str, ReplayedCase), ChoicesError> {
+        let exhaustive = CaseReplay::show(self.exhaustive.replay, choices);
+        let sampled = self.sampled.map(|sampled| CaseReplay::show(sampled.replay, choices));
+        let fails = |made: &ReplayedCase| matches!(made.case, Err(Stop::Fails(_)));
+        match sampled {
+            Some(Ok(made)) if exhaustive.is_err() || fails(&made) => Ok(("sampled", made)),
+            _ => exhaustive.map(|made| ("exhaustive", made)),
+        }
     }
 }
 
@@ -207,7 +229,7 @@ pub(crate) mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::{choose::Stop, odometer::listed};
+    use crate::odometer::listed;
 
     fn named<'l>(lemmas: &'l [Lemma], name: &str) -> &'l Lemma {
         lemmas.iter().find(|lemma| lemma.name == name).expect("it is listed")
@@ -215,12 +237,13 @@ pub(crate) mod tests {
 
     pub(crate) fn exhaustively(lemmas: &[Lemma], name: &str) {
         let lemma = named(lemmas, name);
-        match lemma.check(&mut |_| ControlFlow::Continue(())) {
-            Ok(_) | Err(LemmaFailure::Stopped(_)) => {}
-            Err(LemmaFailure::Cases { pinned, found }) => {
-                panic!("there are {found} cases; there must be {pinned}, and at least one")
+        let LemmaCheck { cases, failure, .. } = lemma.check(&());
+        match failure {
+            None | Some(LemmaFailure::Stopped) => {}
+            Some(LemmaFailure::Cases { pinned }) => {
+                panic!("there are {cases} cases; there must be {pinned}, and at least one")
             }
-            Err(LemmaFailure::Case(Counterexample { choices, claim, .. })) => panic!(
+            Some(LemmaFailure::Case(Counterexample { choices, claim, .. })) => panic!(
                 "it does not hold that {claim}:\n  toposlam proofs --run {name} --choices {}",
                 listed(&choices)
             ),

@@ -36,7 +36,7 @@ pub mod theorems;
 
 pub use bytes::Bytes;
 pub use choose::{CaseResult, Choose, Exhibit, Stop};
-pub use lemma::Lemma;
+pub use lemma::{ENGINES, Lemma, LemmaCheck, LemmaFailure};
 pub use marker_theorems::MarkerTheorem;
 pub use odometer::{ChoiceOdometer, Counterexample};
 pub use replay::CaseReplay;

@@ -1,6 +1,6 @@
 //! The exhaustive driver: every case within a bound.
 
-use std::{fmt, ops::ControlFlow};
+use toposlam_model::enumerate::Watch;
 
 use crate::choose::{CaseResult, Choose, Stop, unless_it_panics};
 
@@ -16,14 +16,14 @@ pub struct ChoiceOdometer {
 }
 
 impl ChoiceOdometer {
-    /// Makes every case, and returns the number of those to which the lemma applies. It reports the number
-    /// so far to `progress` from time to time, which can end it.
+    /// Makes every case, and returns the number of those to which the lemma applies; if `watch` stops it, the
+    /// number so far. A part is [`PROGRESS`] of them.
     ///
     /// # Errors
     /// Returns the first case in which the lemma fails.
     pub fn exhaust(
         mut lemma: impl FnMut(&mut Self) -> CaseResult,
-        progress: &mut impl FnMut(u64) -> ControlFlow<()>,
+        watch: &dyn Watch,
     ) -> Result<u64, Counterexample> {
         let mut odometer = Self::default();
         let mut accepted = 0_u64;
@@ -37,8 +37,11 @@ impl ChoiceOdometer {
                 Err(Stop::Fails(what)) => Some(what),
                 Ok(()) => {
                     accepted += 1;
-                    if accepted.is_multiple_of(PROGRESS) && progress(accepted).is_break() {
-                        return Ok(accepted);
+                    if accepted.is_multiple_of(PROGRESS) {
+                        watch.part_done(PROGRESS);
+                        if watch.stop() {
+                            return Ok(accepted);
+                        }
                     }
                     None
                 }
@@ -67,7 +70,7 @@ impl ChoiceOdometer {
 }
 
 /// The number of cases between two reports of progress.
-const PROGRESS: u64 = 1 << 16;
+pub const PROGRESS: u64 = 1 << 16;
 
 impl Choose for ChoiceOdometer {
     #[inline]
@@ -96,14 +99,7 @@ pub struct Counterexample {
     pub cases: u64,
 }
 
-/// The choices are separated by commas, in the format of `--choices`.
-impl fmt::Display for Counterexample {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        write!(out, "it does not hold that {}; choices {}", self.claim, listed(&self.choices))
-    }
-}
-
-/// Numbers separated by commas.
+/// Choices, separated by commas, in the format of `--choices`.
 pub fn listed(choices: &[u8]) -> String {
     choices.iter().map(u8::to_string).collect::<Vec<_>>().join(",")
 }
@@ -116,7 +112,7 @@ mod tests {
     fn exhaust(
         lemma: impl FnMut(&mut ChoiceOdometer) -> CaseResult,
     ) -> Result<u64, Counterexample> {
-        ChoiceOdometer::exhaust(lemma, &mut |_| ControlFlow::Continue(()))
+        ChoiceOdometer::exhaust(lemma, &())
     }
 
     #[test]

@@ -1,18 +1,36 @@
 //! The theorems that are proved in Coq, for every world. They are read from `coq/Theorems.v`, where each
 //! follows a comment with its statement in words.
 
-/// A theorem that is proved in Coq.
-#[derive(Clone, Debug, PartialEq, Eq)]
+use serde::Serialize;
+
+/// A theorem that is proved in Coq. `toposlam proofs --json` prints it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Theorem {
+    #[serde(rename = "theorem")]
     pub name: &'static str,
     /// Its statement in words.
     pub sentence: String,
     /// Its place in the paper.
     pub paper: String,
+    /// Its file, relative to the root of the workspace.
+    pub file: &'static str,
+    pub coq: Coq,
 }
 
-/// Their file, relative to the root of the workspace.
-pub const FILE: &str = "proofs/coq/Theorems.v";
+/// The check of a theorem by Coq.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Coq {
+    /// The bound, in words: there is none.
+    pub bound: &'static str,
+}
+
+impl Theorem {
+    /// A theorem of this name, with its statement and its place in the paper.
+    pub fn new(name: &'static str, sentence: String, paper: String) -> Self {
+        let (file, coq) = ("proofs/coq/Theorems.v", Coq { bound: "every world" });
+        Self { name, sentence, paper, file, coq }
+    }
+}
 
 const SOURCE: &str = include_str!("../coq/Theorems.v");
 
@@ -31,7 +49,7 @@ fn theorem(text: &'static str) -> Option<Theorem> {
     let plain =
         |text: &str| text.replace(['[', ']'], "").split_whitespace().collect::<Vec<_>>().join(" ");
     let paper = plain(paper).trim_end_matches('.').to_owned();
-    Some(Theorem { name, sentence: plain(sentence), paper })
+    Some(Theorem::new(name, plain(sentence), paper))
 }
 
 #[cfg(test)]
@@ -43,7 +61,7 @@ mod tests {
         let stated = SOURCE.lines().filter(|line| line.trim_start().starts_with("Theorem "));
         assert_eq!(all().count(), stated.count());
         assert!(all().count() > 0);
-        for Theorem { name, sentence, paper } in all() {
+        for Theorem { name, sentence, paper, .. } in all() {
             assert!(sentence.ends_with('.') && !paper.is_empty(), "{name}: {sentence} {paper}");
         }
     }
@@ -55,7 +73,7 @@ mod tests {
         );
         let (name, sentence, paper) =
             ("way", "The way f back is one.".into(), "2.3; line 15".into());
-        assert_eq!(read, Some(Theorem { name, sentence, paper }));
+        assert_eq!(read, Some(Theorem::new(name, sentence, paper)));
         assert_eq!(
             theorem(" What is proved. *)\nFrom mathcomp Require Import all_ssreflect."),
             None

@@ -6,7 +6,6 @@
 use std::{
     fs::{self, File},
     iter,
-    ops::ControlFlow,
     path::Path,
     process::Command,
 };
@@ -191,7 +190,7 @@ impl Case {
             lines.push(mapping.run_line(&start, Some(&mut |of| choose.below(of))));
             Ok(())
         };
-        ChoiceOdometer::exhaust(run, &mut |_| ControlFlow::Continue(())).unwrap();
+        ChoiceOdometer::exhaust(run, &()).unwrap();
         Self { algorithm: mapping.name(), start, given: "choices all".to_owned(), lines }
     }
 

@@ -25,9 +25,9 @@ fn arguments(line: &str) -> ProofsArguments {
 /// Runs the verb on these lemmas.
 fn run(lemmas: &[Lemma], line: &str) -> (Result<Outcome, CliError>, String) {
     let mut out = Vec::new();
-    let theorems = [Theorem { name: "round", sentence: "It turns.".into(), paper: "2.2".into() }];
+    let theorems = [Theorem::new("round", "It turns.".into(), "2.2".into())];
     let lemmas: Vec<_> = lemmas.iter().collect();
-    let outcome = arguments(line).run_with(&lemmas, &theorems, &mut out);
+    let outcome = arguments(line).run_with((&lemmas, &theorems), &mut out);
     (outcome, String::from_utf8(out).unwrap())
 }
 
@@ -307,9 +307,12 @@ fn a_check_can_be_stopped() {
         ("", "\nincomplete, interrupted: 0 of 2 lemmas held, 65,536 cases; 1 not checked\n"),
         ("--json", "\"interrupted\":true,\"verdict\":\"not-known\",\"holds\":false}\n"),
     ] {
-        let checked = [CheckedLemma::new(&many, &AtOnce)];
         let mut out = Vec::new();
-        let outcome = arguments(options).print_totals(2, &checked, &mut out);
+        let mut report = Report { text: &mut out, json: &mut io::sink() };
+        if options == "--json" {
+            mem::swap(&mut report.text, &mut report.json);
+        }
+        let outcome = report.totals(2, &[many.check(&AtOnce)]);
         assert_eq!(outcome.unwrap(), Outcome::Incomplete);
         let text = String::from_utf8(out).unwrap();
         assert!(text.ends_with(end), "{text}");
