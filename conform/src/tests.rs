@@ -34,6 +34,7 @@ mod folding;
 mod measured;
 mod oracle;
 mod parts;
+mod possible;
 mod recovery;
 mod report;
 mod tolerance;

@@ -1,13 +1,16 @@
 //! Junctions from laser scans, in plans of corridors and in logs of real buildings.
 
 use std::{
+    collections::BTreeSet,
     env,
     path::{Path, PathBuf},
     sync::Arc,
 };
 
 use nalgebra::{Isometry2, Rotation2, Vector2};
-use toposlam_conform::{CheckedKind, EventSource, RunEvents, UndecidedCause, visit_events};
+use toposlam_conform::{
+    CheckedKind, EventSource, RunEvents, UndecidedCause, VisitedJunction, visit_events,
+};
 use toposlam_logs::{
     entries::Content,
     reader::Log,
@@ -26,7 +29,7 @@ use toposlam_vision::{
         params::LaserParams,
         scan::Scan,
     },
-    visits::Visits,
+    visits::{VisitPercept, Visits},
 };
 
 /// A degree, and the door that was taken.
@@ -58,12 +61,17 @@ fn events(plan: &CorridorPlan, way: &[[f64; 2]], drift: f64) -> RunEvents {
 }
 
 fn events_of(scans: &[PlacedScan], params: &LaserParams) -> RunEvents {
+    inferred(scans, params).0
+}
+
+fn inferred(scans: &[PlacedScan], params: &LaserParams) -> (RunEvents, Vec<VisitedJunction>) {
     let mut inferred = Visits::by_laser(*params);
     for (number, (scan, odometry)) in scans.iter().enumerate() {
         let source = EventSource { time: number as u64 * 1_000_000_000, ..EventSource::default() };
         inferred.add_frame(source, scan, odometry);
     }
-    RunEvents { events: visit_events(inferred.finish()).0, ..RunEvents::default() }
+    let (events, junctions) = visit_events(inferred.finish());
+    (RunEvents { events, ..RunEvents::default() }, junctions)
 }
 
 /// The scans of that robot, and its odometry.
@@ -325,21 +333,30 @@ fn recorded(name: &str) -> Option<(Vec<MarkedVisit>, Vec<PlacedScan>)> {
     Some((marked.collect(), scans.collect()))
 }
 
-/// The visits in a recorded log are those that were marked by hand.
-fn are_as_marked(name: &str, marked: &[MarkedVisit], events: &RunEvents) {
-    let mut found = visits(events);
-    // Turning back is no visit, and what is undecided has no degree.
-    let backs = events.events.iter().filter(|event| event.kind == CheckedKind::TurnedBack).count();
-    let all = found.len();
-    found.retain(|visit| visit.0.is_some());
-    assert_eq!(all - found.len(), backs, "{name}: undecided visits");
-    assert_eq!(found.len(), marked.len(), "{name}: {found:?}");
-    for (found, marked) in found.iter().zip(marked) {
-        assert_eq!(found.0.map(u64::from), Some(marked.0), "{name}: {found:?}");
-        // The door of the first visit is not marked if the log begins there.
-        let door = found.1.map(u64::from);
-        assert!(marked.1.is_none() || door == marked.1, "{name}: {found:?}, {marked:?}");
+/// The visits in a recorded log are those that were marked by hand, as far as the scans decide: at least two thirds of
+/// the visits have one percept, and where nothing was marked there may be no junction.
+fn are_as_marked(name: &str, marked: &[MarkedVisit], visited: &[VisitedJunction]) {
+    // The numbers of marked visits that those so far can be.
+    let mut counts = BTreeSet::from([0]);
+    for visit in visited {
+        let next = |&count: &usize| {
+            let (degree, door) = *marked.get(count)?;
+            // The door of the first visit is not marked if the log begins there.
+            let is_it = |seen: &VisitPercept| {
+                let left = seen.door.map(u64::from);
+                u64::from(seen.degree) == degree && (door.is_none() || left == door)
+            };
+            visit.alternatives.iter().flatten().any(is_it).then_some(count + 1)
+        };
+        let mut after: BTreeSet<_> = counts.iter().filter_map(next).collect();
+        if visit.alternatives.contains(&None) {
+            after.append(&mut counts);
+        }
+        counts = after;
     }
+    assert!(counts.contains(&marked.len()), "{name}: {visited:?}");
+    let open = visited.iter().filter(|visit| visit.alternatives.len() != 1).count();
+    assert!(3 * open <= visited.len(), "{name}: {visited:?}");
 }
 
 #[test]
@@ -350,13 +367,13 @@ fn the_vertices_of_two_real_buildings_are_visited_as_they_were_marked_by_hand() 
         let mut at_junctions = marked.clone();
         at_junctions.retain(|visit| visit.0 >= 3);
         assert_eq!(at_junctions.len(), junctions);
-        are_as_marked(name, &at_junctions, &events_of(&scans, &LaserParams::default()));
+        are_as_marked(name, &at_junctions, &inferred(&scans, &LaserParams::default()).1);
         if name == "seattle" {
             // The log begins in a dead end, and ends before the robot has passed the last corner.
             marked.remove(0);
             marked.pop();
         }
-        are_as_marked(name, &marked, &events_of(&scans, &with_corners()));
+        are_as_marked(name, &marked, &inferred(&scans, &with_corners()).1);
     }
 }
 
@@ -409,7 +426,7 @@ fn the_junctions_of_two_real_buildings_are_visited_alike_if_the_heading_drifts()
                 are_as_marked(
                     &format!("{name}, {drift}"),
                     &marked,
-                    &events_of(&scans, &matched(ROUNDS)),
+                    &inferred(&scans, &matched(ROUNDS)).1,
                 );
             }
         }

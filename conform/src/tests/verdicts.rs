@@ -1,4 +1,4 @@
-//! "Conforms", "diverged" and "incomplete" are three verdicts: a good log never diverges, a mutated log
+//! "Conforms", "diverged" and "not known" are three verdicts: a good log never diverges, a mutated log
 //! conforms only if another walk explains it, and a log diverges only at an event that cannot be explained.
 
 use toposlam_model::{
@@ -7,7 +7,7 @@ use toposlam_model::{
     folding::{SearchLimit, SmallestWorld},
     format::world_file,
     mapping::{MapWalk, MappingEvent},
-    marker::{Marker, NoMarker, Undirected},
+    marker::{Directional, Marker, NoMarker, Undirected},
     trace::{Trace, TraceEventKind},
 };
 use toposlam_vision::visits::APPROACH_RANGE;
@@ -519,6 +519,22 @@ fn the_door_after_turning_back_is_counted_from_the_first_entry() {
 }
 
 #[test]
+fn a_marker_that_is_not_seen_lies_behind_some_door() {
+    let nothing = |degree| bare_arrival(degree, Sighting::Nothing);
+    let at = |last: u32, marker: &'static dyn Marker| {
+        let walk = [nothing(1), bare_door(0), nothing(last)];
+        let judged = judged(&bare_events(walk), &ConformConfig { marker, ..by_anyone() });
+        judged.divergence.as_ref().map(place_of)
+    };
+    for marker in [&Directional as &'static dyn Marker, &Undirected] {
+        // Two dead ends, and nothing else.
+        assert_eq!(at(1, marker), Some((2, "no-world")), "{}", marker.name());
+        assert_eq!(at(2, marker), None, "{}", marker.name());
+    }
+    assert_eq!(at(1, &NoMarker), None);
+}
+
+#[test]
 fn a_door_that_a_junction_does_not_have_diverges_whoever_drives() {
     let nothing = |degree| bare_arrival(degree, Sighting::Nothing);
     let at = |kinds: &[CheckedKind]| {
@@ -527,8 +543,8 @@ fn a_door_that_a_junction_does_not_have_diverges_whoever_drives() {
     };
     for (door, found) in [(1, None), (2, Some((3, "no-world"))), (u32::MAX, Some((3, "no-world")))]
     {
-        // After the junction with two doors lies another one.
-        let walk = [nothing(1), bare_door(0), nothing(2), bare_door(door), nothing(1)];
+        // After the junction with two doors lies another one, from which the marker may be reached.
+        let walk = [nothing(1), bare_door(0), nothing(2), bare_door(door), nothing(2)];
         assert_eq!(at(&walk), found, "door {door}");
     }
     let back = || CheckedKind::TurnedBack;

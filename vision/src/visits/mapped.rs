@@ -503,7 +503,11 @@ impl<S: Copy + Default> MappedRule<S> {
             let clockwise = |arm: &PlaceArm| (entry - arm.direction).rem_euclid(TAU);
             arms.sort_by(|one, other| clockwise(one).total_cmp(&clockwise(other)));
         }
-        let goes_back = stay.exit.is_some_and(|(exit, _)| self.is_same(entry, exit));
+        let directions: Vec<f64> = arms.iter().map(|arm| arm.direction).collect();
+        let goes_back = stay.exit.is_some_and(|(exit, _)| {
+            let back = nearest_direction(&directions, entry);
+            self.is_same(entry, exit) && nearest_direction(&directions, exit) == back
+        });
         let turn = stay.odometry_from_map.rotation.angle();
         for arm in &mut arms {
             arm.direction = wrapped(arm.direction + turn);

@@ -1,0 +1,101 @@
+//! Visits of a laser log that the scans do not decide: what fits, and that nobody is accused on a guess.
+
+use toposlam_model::{embedded_graph::EmbeddedGraph, marker::NoMarker, trace::anywhere};
+use toposlam_vision::visits::VisitPercept;
+
+use super::*;
+use crate::{PossibleVisits, UndecidedCause, VisitFit, VisitedJunction, known_world::KnownWorld};
+
+/// A visit: what the scans cannot exclude, and whether the robot left the way that it came.
+type Seen<'s> = (&'s [Option<(u32, u32)>], bool);
+
+/// The judgement of visits, in a world without a marker, from any of its darts, or in any world.
+fn judged_visits(visits: &[Seen], world: Option<&EmbeddedGraph>) -> Judgement {
+    let mut kinds = Vec::new();
+    let mut junctions = Vec::new();
+    for &(seen, goes_back) in visits {
+        let percept = |&(degree, door): &(u32, u32)| VisitPercept { degree, door: Some(door) };
+        junctions.push(VisitedJunction {
+            event: kinds.len(),
+            centre: [0.0; 2],
+            clearance: 1.0,
+            extent: 1.0,
+            doors: Vec::new(),
+            alternatives: seen.iter().map(|one| one.as_ref().map(percept)).collect(),
+            goes_back,
+            exit: None,
+        });
+        match *seen {
+            [Some((degree, door))] => {
+                kinds.extend([bare_arrival(degree, Sighting::Nothing), bare_door(door)]);
+            }
+            _ => kinds.push(CheckedKind::Undecided(UndecidedCause::UnseenArm)),
+        }
+    }
+    let events = bare_events(kinds);
+    let states = |graph: &EmbeddedGraph| anywhere(graph, &NoMarker);
+    let world = world.map(|graph| KnownWorld { graph: graph.clone(), states: states(graph) });
+    let config = ConformConfig { world, marker: &NoMarker, ..by_anyone() };
+    judged(&events, &config).with_possible(PossibleVisits::judge(&events, &junctions, &config))
+}
+
+fn verdict(judgement: &Judgement) -> (ConformVerdict, VisitFit, &[usize]) {
+    let possible = judgement.possible.as_ref().unwrap();
+    assert_eq!(judgement.divergence, None);
+    (judgement.verdict(), possible.fit, &possible.decided_by_world)
+}
+
+/// A tail that ends at a fork, whose other two doors are joined by a hallway through a junction with two doors.
+fn ring() -> EmbeddedGraph {
+    let lists = [
+        ("end", vec!["a"]),
+        ("a", vec!["end", "b", "c"]),
+        ("b", vec!["a", "c"]),
+        ("c", vec!["b", "a"]),
+    ];
+    EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
+}
+
+#[test]
+fn a_known_world_decides_visits_that_scans_leave_open() {
+    let end: Seen = (&[Some((1, 0))], true);
+    let open: Seen = (&[Some((3, 1)), Some((4, 1)), None], false);
+    let corner: Seen = (&[Some((2, 1))], false);
+    let found = judged_visits(&[end, open, corner, corner], Some(&ring()));
+    assert_eq!(verdict(&found), (ConformVerdict::Conforms, VisitFit::Fits, &[1][..]));
+    // With half of the visits open a fit says too little.
+    let found = judged_visits(&[end, open, open, corner], Some(&ring()));
+    assert_eq!(verdict(&found).0, ConformVerdict::NotKnown);
+    assert_eq!(verdict(&found).1, VisitFit::Fits);
+}
+
+#[test]
+fn what_scans_show_accuses_nobody() {
+    let end: Seen = (&[Some((1, 0))], true);
+    let crossing: Seen = (&[Some((4, 1))], false);
+    let found = judged_visits(&[end, crossing], Some(&ring()));
+    assert_eq!(verdict(&found), (ConformVerdict::NotKnown, VisitFit::Contradiction, &[][..]));
+    assert_eq!(found.contradiction.unwrap().event, 2);
+    // A choice of what is open can contradict the world, too.
+    let open: Seen = (&[Some((4, 1)), Some((5, 1))], false);
+    let found = judged_visits(&[end, open], Some(&ring()));
+    assert_eq!(verdict(&found).1, VisitFit::Contradiction);
+}
+
+#[test]
+fn without_a_world_a_marker_and_turning_back_any_visits_would_fit() {
+    let fork: Seen = (&[Some((3, 1))], false);
+    let back: Seen = (&[Some((3, 0))], true);
+    let found = judged_visits(&[fork, fork], None);
+    assert_eq!(verdict(&found), (ConformVerdict::NotKnown, VisitFit::Anything, &[][..]));
+    let found = judged_visits(&[fork, back, fork], None);
+    assert_eq!(verdict(&found), (ConformVerdict::Conforms, VisitFit::Fits, &[][..]));
+    // It comes back to another number of doors.
+    let other: Seen = (&[Some((4, 1))], false);
+    let found = judged_visits(&[fork, back, other], None);
+    assert_eq!(verdict(&found).1, VisitFit::Contradiction);
+    // Nothing is known of a visit: it may have been any junction, or none.
+    let anything: Seen = (&[], false);
+    let found = judged_visits(&[fork, back, fork, anything], None);
+    assert_eq!(verdict(&found), (ConformVerdict::Conforms, VisitFit::Fits, &[][..]));
+}
