@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 use toposlam_logs::{
+    ReadingRemark,
     entries::{Content, Entry},
     error::LogError,
     messages,
@@ -32,7 +33,7 @@ use super::{
     marked_visits::{TimedSighting, VisitedJunction},
     message_clock::MessageClock,
     placed_scenes::{PlacedScenes, SceneClockError, SensedScene},
-    scan_odometry::{PlacedScan, ScanOdometry},
+    scan_odometry::{PlacedScan, ScanOdometry, StampCounts},
     visit_events::visit_events,
 };
 
@@ -74,6 +75,9 @@ pub struct ExtractedRun {
     /// The messages of all scans, in their order.
     pub scan_messages: Vec<EventId>,
     pub skipped: SkippedMessages,
+    /// What was repaired in the messages.
+    pub remarks: Vec<ReadingRemark>,
+    pub stamps: StampCounts,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
@@ -100,8 +104,8 @@ pub enum ExtractError {
     #[error(transparent)]
     TopicMap(#[from] DocumentError),
     #[error(
-        "no topics are known for percepts and doors, nor for scenes, images or laser scans with odometry; \
-         `toposlam info` lists the topics"
+        "no topics are known for percepts and doors, nor for scenes, images or laser scans with \
+         odometry"
     )]
     NothingMapped,
     /// Images must be sensed without a calibration or colours.
@@ -150,7 +154,20 @@ impl Evidence {
 
     /// Whether a topic map has this source of events.
     pub fn is_in(self, mapping: &TopicMap) -> bool {
-        self.roles().iter().take(2).all(|role| mapping.carrier(*role).is_some())
+        self.needs().iter().all(|role| mapping.carrier(*role).is_some())
+    }
+
+    /// The roles without which there are no events.
+    pub fn needs(self) -> &'static [Role] {
+        self.roles().get(..2).unwrap_or_default()
+    }
+
+    /// Its name as a value of `--events`.
+    pub fn option(self) -> &'static str {
+        match self {
+            Self::Images => "images",
+            other => other.name(),
+        }
     }
 
     /// The roles that it needs, two of them, and what it uses besides.
@@ -203,6 +220,7 @@ pub fn extract(
         watch,
         laser: Visits::by_laser(laser),
         placing: ScanOdometry::default(),
+        last_scan: 0,
     };
     extraction.read_entries(log, &bound)?;
     let Extraction { mut run, recorded, scenes, laser, .. } = extraction;
@@ -247,8 +265,7 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
             Content::Event(EventKind::Odometry(odometry)) => placing.odometry(stamp, odometry),
             Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) => {
                 let source = EventSource::default();
-                let placed = placing.scan(stamp, PlacedScan { source, scan, odometry });
-                placed.into_iter().collect()
+                placing.scan(PlacedScan { source, stamp, scan, odometry })
             }
             _ => return,
         };
@@ -260,7 +277,10 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
     for entry in log.entries(bound).map_while(Result::ok).filter(is_timed) {
         clock.next(entry.time, entry).into_iter().for_each(&mut take);
     }
-    clock.finish().0.into_iter().for_each(take);
+    clock.finish().0.into_iter().for_each(&mut take);
+    for placed in placing.finish().into_iter().flatten() {
+        meter.add_scan(&placed.scan, &placed.odometry);
+    }
     meter.finish()
 }
 
@@ -300,12 +320,15 @@ struct Extraction<'w, W> {
     laser: Visits<LaserSensor, EventSource>,
     /// Scans that wait for their odometry.
     placing: ScanOdometry,
+    /// The time of the last scan that was sensed.
+    last_scan: u64,
 }
 
 impl<W: Watch> Extraction<'_, W> {
     fn read_entries(&mut self, log: &Log, bound: &BoundTopicMap) -> Result<(), ExtractError> {
         let mut clock = MessageClock::default();
-        for entry in log.entries(bound) {
+        let mut entries = log.entries(bound);
+        for entry in entries.by_ref() {
             let entry = entry?;
             if self.run.evidence == Evidence::Laser && is_timed(&entry) {
                 clock
@@ -321,8 +344,10 @@ impl<W: Watch> Extraction<'_, W> {
         self.look()?;
         let scans_without_odometry = self.placing.without_odometry();
         self.run.skipped = SkippedMessages { off_clock, scans_without_odometry };
+        self.run.remarks = entries.remarks();
+        self.run.stamps = self.placing.counts();
         match std::mem::take(&mut self.placing).finish() {
-            Some(waiting) => waiting.for_each(|placed| self.add_scan(&placed)),
+            Some(waiting) => waiting.for_each(|placed| self.add_scan(placed)),
             None if self.run.scans > 0 => {
                 return Err(ExtractError::NoOdometry { scans: self.run.scans });
             }
@@ -365,7 +390,7 @@ impl<W: Watch> Extraction<'_, W> {
         match kind {
             EventKind::Odometry(odometry) => {
                 for placed in self.placing.odometry(stamp, odometry) {
-                    self.add_scan(&placed);
+                    self.add_scan(placed);
                 }
                 if matches!(self.run.evidence, Evidence::Scenes | Evidence::Images) {
                     self.scenes.add_odometry(id, stamp, odometry);
@@ -378,8 +403,7 @@ impl<W: Watch> Extraction<'_, W> {
                 self.run.scans += 1;
                 self.run.scan_messages.push(id);
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
-                let placed = self.placing.scan(stamp, PlacedScan { source, scan, odometry });
-                if let Some(placed) = &placed {
+                for placed in self.placing.scan(PlacedScan { source, stamp, scan, odometry }) {
                     self.add_scan(placed);
                 }
             }
@@ -397,9 +421,11 @@ impl<W: Watch> Extraction<'_, W> {
     }
 
     /// Senses a laser scan.
-    fn add_scan(&mut self, placed: &PlacedScan) {
-        let PlacedScan { source, scan, odometry } = placed;
-        self.laser.add_frame(*source, scan, odometry);
+    fn add_scan(&mut self, PlacedScan { source, scan, odometry, .. }: PlacedScan) {
+        // Scans are in the order of their stamps.
+        self.last_scan = self.last_scan.max(source.time);
+        let source = EventSource { time: self.last_scan, ..source };
+        self.laser.add_frame(source, &scan, &odometry);
         self.watch.part_done(1);
     }
 

@@ -26,6 +26,7 @@ use super::{
         EventPose, Facts, LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName,
         RequiredCoverage, WorldFact,
     },
+    scan_odometry::StampCounts,
     twin::TwinWorld,
 };
 
@@ -182,8 +183,7 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
     let LogReport { facts, verdict, events, .. } = report;
     let mut remarks: Vec<String> = other_world(facts).into_iter().collect();
     remarks.extend(facts.truncated.as_ref().map(|truncation| format!("the log is {truncation}")));
-    remarks.extend(skipped_lines(facts));
-    remarks.extend(skipped_messages(facts.skipped_messages));
+    remarks.extend(reading(facts));
     match &facts.ending {
         Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),
         Some(RunEnding::GaveUp(cause)) => {
@@ -294,13 +294,36 @@ pub fn other_world(facts: &Facts) -> Option<String> {
     Some(format!("the log was recorded in another world{comma}{}", recorded.world))
 }
 
+/// Remarks on what was skipped or repaired when the log was read.
+pub fn reading(facts: &Facts) -> Vec<String> {
+    let times = facts.line_times.map(|times| times.to_string());
+    let skipped = [skipped_lines(facts), times, skipped_messages(facts.skipped_messages)];
+    let repaired = facts.reading.iter().map(ToString::to_string);
+    skipped.into_iter().chain(stamps(facts.stamps)).flatten().chain(repaired).collect()
+}
+
+/// Remarks on messages that were not recorded in the order of their stamps.
+fn stamps(counts: StampCounts) -> [Option<String>; 2] {
+    let StampCounts { late_scans, late_odometry, other_clock } = counts;
+    let late = [(late_scans, "scan"), (late_odometry, "odometry reading")];
+    let late = late.into_iter().filter(|(count, _)| *count > 0);
+    let late: Vec<_> = late.map(|(count, what)| counted(count as usize, what)).collect();
+    let late = (!late.is_empty())
+        .then(|| format!("recorded late, and placed by the stamps: {}", late.join(", ")));
+    let other = (other_clock > 0).then(|| {
+        let scans = counted(other_clock as usize, "scan");
+        format!("placed by the order of the log: {scans} whose stamps are far from those of the odometry")
+    });
+    [late, other]
+}
+
 /// A remark on the lines that were skipped; `None` if there are none.
-pub fn skipped_lines(facts: &Facts) -> Option<String> {
+fn skipped_lines(facts: &Facts) -> Option<String> {
     facts.skipped_lines.as_ref().map(|skipped| format!("skipped {skipped}"))
 }
 
 /// A remark on the messages that were skipped; `None` if there are none.
-pub fn skipped_messages(skipped: SkippedMessages) -> Option<String> {
+fn skipped_messages(skipped: SkippedMessages) -> Option<String> {
     let SkippedMessages { off_clock, scans_without_odometry } = skipped;
     let far = format!("{} whose time is far from that of all others", grouped(off_clock.into()));
     let scans = format!("{} without odometry", counted(scans_without_odometry as usize, "scan"));

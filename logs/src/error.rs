@@ -26,6 +26,7 @@ impl LogError {
             LogErrorKind::Unreadable(_)
             | LogErrorKind::NoBagFiles
             | LogErrorKind::NoDatabases
+            | LogErrorKind::Encrypted(_)
             | LogErrorKind::Metadata { .. } => file,
             _ => format!("{file}{} {}: ", self.unit.name(), self.offset),
         }
@@ -61,6 +62,8 @@ pub enum LogErrorKind {
     NotALog,
     #[error("this is a bag of version {0}; only version 2.0 can be read")]
     Version(String),
+    #[error("the bag is encrypted ({0}): decrypt it first, with `rosbag decrypt`")]
+    Encrypted(String),
     #[error("the record is malformed: {0}")]
     Malformed(&'static str),
     #[error("the compression {0:?} is not known; known are {1}")]
@@ -77,6 +80,8 @@ pub enum LogErrorKind {
     Checksum(&'static str),
     #[error("the index counts {indexed} messages, and there are {found}, or on other topics")]
     Count { indexed: u64, found: u64 },
+    #[error("the index lists {listed} of the {all} chunks, or some of them twice")]
+    ChunkIndex { listed: usize, all: usize },
     #[error("the time of a message is outside of the times of its chunk")]
     OutsideTimes,
     #[error("this folder has no metadata.yaml, and no .db3 or .mcap file")]
@@ -95,14 +100,17 @@ pub enum LogErrorKind {
     Line(String),
     #[error("the line is longer than {} bytes", grouped(*.0 as u128))]
     LongLine(usize),
-    #[error("the clock jumps from {from:.3} s to {to:.3} s, and stays there")]
-    ClockJump { from: f64, to: f64 },
     #[error("a message of connection {0}, which has no record")]
     UnknownConnection(u32),
     #[error("a message has an earlier time than its chunk")]
     TooOld,
     #[error("message {number}, on {topic}: {what}")]
     Content { number: u64, topic: String, what: String },
+    /// The pose of a scanner on its robot is not known.
+    #[error("message {number}, on {topic}: {what}")]
+    Frame { number: u64, topic: String, what: String },
+    #[error("{first} (at least {} of {} messages on the topic cannot be used)", grouped((*count).into()), grouped((*all).into()))]
+    Unusable { first: Box<LogErrorKind>, count: u64, all: u64 },
 }
 
 impl LogErrorKind {
@@ -114,6 +122,7 @@ impl LogErrorKind {
             Self::Unreadable(_)
                 | Self::NotALog
                 | Self::Version(_)
+                | Self::Encrypted(_)
                 | Self::Compression(..)
                 | Self::NoDatabases
                 | Self::NoBagFiles

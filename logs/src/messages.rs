@@ -15,7 +15,6 @@ macro_rules! own {
         $($field:ident: $type:ty $(= $older:expr)?,)*
     })*) => {
         /// The types and their definitions, without those that they use.
-        #[cfg(feature = "sqlite")]
         pub(super) const OWN: &[(&str, &str)] = &[$(($name::TYPE, $name::DEFINITION),)*];
 
         $(
@@ -118,8 +117,7 @@ own! {
 }
 
 /// The schema of a published type or one of the project, for logs that do not define their messages: databases of
-/// rosbag2 before ROS 2 Iron.
-#[cfg(feature = "sqlite")]
+/// rosbag2 before ROS 2 Iron, and MCAP files whose recorder had no definitions.
 pub(super) fn published_schema(type_name: &str) -> Option<String> {
     use super::{
         definition::short_name,
@@ -131,7 +129,7 @@ pub(super) fn published_schema(type_name: &str) -> Option<String> {
     text.map(schema)
 }
 
-#[cfg(all(test, feature = "sqlite"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::{

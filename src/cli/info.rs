@@ -23,7 +23,7 @@ use super::{
     outcome::SeveralInputs,
     output,
     progress::Progress,
-    text::{counted, duration_text, grouped, moment, print_hanging, print_rows},
+    text::{counted, duration_text, grouped, moment, print_hanging, print_rows, printable},
 };
 
 /// Show the contents of logs: times, completeness and topics
@@ -121,7 +121,7 @@ impl InfoArguments {
                     let line = json!({ "log": log, "verification": verification });
                     print_line(out, "damaged-log", &line)?;
                 } else {
-                    writeln!(out, "{log}: damaged, and not read further")?;
+                    writeln!(out, "{}: damaged, and not read further", printable(&log))?;
                     print_damage(out, &found)?;
                 }
                 return Ok((false, Outcome::Violated));
@@ -215,8 +215,9 @@ fn shown(name: &str) -> String {
 }
 
 impl ListedLog<'_> {
-    /// Seconds.
+    /// Seconds; `None` if the times of its lines are not those of a clock.
     fn duration(&self) -> Option<f64> {
+        self.log.irregular_times().is_none_or(|times| times.are_known()).then_some(())?;
         let (start, end) = self.log.start().zip(self.log.end())?;
         Some(end.saturating_sub(start) as f64 / 1e9)
     }
@@ -263,6 +264,7 @@ impl ListedLog<'_> {
             "truncated": log.truncation().map(TruncatedLine::from),
             "indexed": self.is_indexed(),
             "skipped": log.skipped(),
+            "line_times": log.irregular_times(),
             "verification": verification.as_ref().map(|found| verification_json(found, outcome)),
             "topics": log.topics().iter().map(topic).collect::<Vec<_>>(),
             "mapping": mapping,
@@ -293,7 +295,8 @@ impl ListedLog<'_> {
         let log = self.log;
         let compression =
             log.compression().map_or(String::new(), |known| format!(", {}", known.name()));
-        let (path, size) = (self.path.display(), grouped(log.size().into()));
+        let path = printable(&self.path.display().to_string());
+        let size = grouped(log.size().into());
         writeln!(out, "{path}: {}{compression}, {size} bytes", format(log)[1])?;
         if let Some(truncation) = log.truncation() {
             print_hanging(out, "", &truncation.to_string())?;
@@ -310,6 +313,9 @@ impl ListedLog<'_> {
         writeln!(out, "{}", counted(log.messages_total() as usize, "message"))?;
         if let Some(skipped) = log.skipped() {
             print_hanging(out, "", &format!("skipped {skipped}"))?;
+        }
+        if let Some(times) = log.irregular_times() {
+            print_hanging(out, "", &times.to_string())?;
         }
         writeln!(out)?;
         let row = |topic: &Topic| {

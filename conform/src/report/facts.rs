@@ -1,7 +1,7 @@
 //! What was checked, and against what.
 
 use serde::{Serialize, Serializer, ser::SerializeMap};
-use toposlam_logs::{SkippedLines, error::Truncation, record::RunEnding};
+use toposlam_logs::{LineTimes, ReadingRemark, SkippedLines, error::Truncation, record::RunEnding};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
@@ -24,6 +24,7 @@ use super::super::{
     marked_visits::AddedMarker,
     measured_hallways::MeasuredHallways,
     possible_visits::PossibleVisits,
+    scan_odometry::StampCounts,
     twin::TwinWorld,
 };
 use super::events::PoseName;
@@ -47,6 +48,12 @@ pub struct Facts {
     /// The lines of a log of lines that are not read.
     #[serde(rename = "skipped")]
     pub skipped_lines: Option<SkippedLines>,
+    /// The times of a log of lines, if some are not those of a clock.
+    pub line_times: Option<LineTimes>,
+    /// What was repaired in the messages, and which could not be used.
+    #[serde(rename = "repaired")]
+    pub reading: Vec<ReadingRemark>,
+    pub stamps: StampCounts,
     pub recorded: Option<RecordedWorld>,
     #[serde(serialize_with = "recorded_ending")]
     pub ending: Option<RunEnding>,
@@ -193,6 +200,9 @@ impl CheckedLog {
             skipped_messages: extracted.skipped,
             truncated: source.log.truncation().cloned(),
             skipped_lines: source.log.skipped().cloned(),
+            line_times: source.log.irregular_times(),
+            reading: extracted.remarks.clone(),
+            stamps: extracted.stamps,
             recorded: source.head.filter(|run| !run.world_hash.is_empty()).map(|run| {
                 let known = known.as_ref();
                 RecordedWorld {
