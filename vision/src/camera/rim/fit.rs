@@ -93,6 +93,13 @@ impl CircleFit {
         self.seen * falls as f64 / self.edges.len().max(1) as f64
     }
 
+    /// Whether a good part of its edges are on another circle, too.
+    pub(super) fn is_part_of(&self, other: &Self) -> bool {
+        let near = 1.5 * unit(&other.circle);
+        let common = self.edges.iter().filter(|edge| other.circle.off(edge.at).abs() < near);
+        4 * common.count() > self.edges.len()
+    }
+
     /// The part of the sectors in the image in which it is seen: an arc is in few of them.
     pub(super) fn spread_over(&self, image: &Brightness) -> f64 {
         let (mut inside, mut on) = ([0_usize; SECTORS], [0_usize; SECTORS]);

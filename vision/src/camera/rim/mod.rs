@@ -180,9 +180,11 @@ fn rim(
             && !fit.circle.is_near(&outer.circle, SAME)
             && !rings::is_dark_ring(image, &rim.circle, &fit.circle)
     };
-    let rival = others.iter().find(is_other);
-    let lead = rival.map_or(f64::INFINITY, |rival| best.score() / rival.score());
-    let is_leading = !is_second && lead >= CLEAR_LEAD && best.share() >= LEAST_LEADING;
+    // A circle that has most of its edges in common with the best one is no other.
+    let leads = |fit: &CircleFit| best.score() >= CLEAR_LEAD * fit.score();
+    let is_leading = !is_second
+        && best.share() >= LEAST_LEADING
+        && others.iter().filter(is_other).all(|fit| leads(fit) || fit.is_part_of(best));
     if best.seen < LEAST_SEEN || (best.share() < LEAST_SHARE && !is_leading) {
         return Err((RimDoubt::NoEdge, circles()));
     }
@@ -192,13 +194,12 @@ fn rim(
     if is_ring && !is_narrow && rim.seen < LEAST_SEEN {
         return Err((RimDoubt::Nested, circles()));
     }
-    if let Some(rival) = rival.filter(|_| lead < 1.0 / LEAD) {
+    let is_rival = |fit: &&CircleFit| is_other(fit) && fit.score() > LEAD * best.score();
+    if let Some(rival) = others.iter().find(is_rival) {
         return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
     }
     if !is_ring || is_narrow {
-        let beside = outer.beside(image);
-        let is_rival = |fit: &&CircleFit| is_other(fit) && fit.score() > LEAD * outer.score();
-        if let Some(rival) = beside.iter().find(is_rival) {
+        if let Some(rival) = outer.beside(image).iter().find(is_rival) {
             return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
         }
     }

@@ -69,15 +69,10 @@ fn around_centre(image: &Brightness, fit: &CircleFit) -> Vec<CircleFit> {
         .collect();
     found.push(fit.clone());
     found.sort_by(|one, other| other.score().total_cmp(&one.score()));
-    // The best one of those that have most of their edges in common.
+    // The best one of those that have edges in common.
     let mut rings: Vec<CircleFit> = Vec::new();
     for ring in found {
-        let is_common = |other: &CircleFit| {
-            let near = 1.5 * unit(&other.circle);
-            let common = ring.edges.iter().filter(|edge| other.circle.off(edge.at).abs() < near);
-            4 * common.count() > ring.edges.len()
-        };
-        if !rings.iter().any(is_common) {
+        if !rings.iter().any(|other| ring.is_part_of(other)) {
             rings.push(ring);
         }
     }
