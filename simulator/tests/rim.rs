@@ -97,13 +97,16 @@ const CLUTTER: [(&str, f64); 6] = [
 #[test]
 #[ignore = "a long sweep, for `.ci/run --all`"]
 fn the_rim_is_found_in_one_image_with_any_clutter() {
-    for setting in CLUTTER {
+    let mut all = [0; 2];
+    for setting in [CROPPED[0]].into_iter().chain(CLUTTER) {
         for (size, more) in [([640, 480], &[][..]), ([1280, 960], &CROPPED[..])] {
-            let [shown, found] = found(0..3, size, &[more, &[setting]].concat());
+            let [shown, found] = found(0..4, size, &[more, &[setting]].concat());
             // A dark rim alone may leave a doubt, but is never a wrong circle.
             assert!(shown == found || setting.0 == "dark-rim", "{setting:?} {size:?}");
+            all = [all[0] + shown, all[1] + found];
         }
     }
+    assert!(all[0] == 56 && all[1] >= 54, "found {} of {}", all[1], all[0]);
 }
 
 #[test]
@@ -119,7 +122,7 @@ fn no_wrong_rim_is_found_in_one_image_with_all_clutter_that_crops_it_on_three_si
     }
     let [shown, found] = all;
     // In the others, a dark ring and dark furniture leave too little of the rim: none is found.
-    assert!(shown >= 12 && found >= 5, "found {found} of {shown}");
+    assert!(shown == 28 && found >= 25, "found {found} of {shown}");
 }
 
 #[test]
@@ -136,10 +139,7 @@ fn an_image_without_a_rim_has_none() {
         for image in [inside, part] {
             let found = rim::find(&[image]);
             assert!(
-                matches!(
-                    found,
-                    Err(RimError::NoRim | RimError::Ambiguous { .. } | RimError::Uncertain { .. })
-                ),
+                matches!(found, Err(RimError::NoRim | RimError::Uncertain { .. })),
                 "{seed}: {:?}",
                 found.map(|rim| (rim.centre, rim.radius, rim.seen))
             );

@@ -214,3 +214,80 @@ proptest! {
         prop_assert!(Mask::from_png("m", &png, [16, 16]).is_err() || png.len() > 40);
     }
 }
+
+const MEI: &str = "[camera]\nkind = \"mei\"\nfile = \"f\"\nviewpoint_height = 1.0\nahead = 90\n\
+                   seen_from = \"below\"\nimage = [1280, 960]\n";
+
+/// The same camera in each form in which a program writes it.
+#[test]
+fn the_forms_of_one_file_are_one_camera() {
+    let camera = |file: &str| read(MEI.as_bytes(), file.as_bytes()).unwrap();
+    let omnidir = camera(
+        "%YAML:1.0\n---\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 900., 0., \
+         640., 0., 910., 480., 0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 4\n   \
+         dt: d\n   data: [ -0.2, 0.1, 0.001, -0.002 ]\nxi: 1.5\n",
+    );
+    assert!(omnidir.pixel_to_ground([700.0, 500.0]).is_some());
+    let others = [
+        // OpenCV's sample omni_calibration writes this.
+        "<?xml version=\"1.0\"?>\n<opencv_storage>\n<calibration_time>\"Thu\"</calibration_time>\n\
+         <camera_matrix type_id=\"opencv-matrix\">\n  <rows>3</rows>\n  <cols>3</cols>\n  <dt>d</dt>\n  <data>\n    \
+         900. 0. 640. 0. 910. 480. 0.\n    0. 1.</data></camera_matrix>\n<distortion_coefficients \
+         type_id=\"opencv-matrix\">\n  <rows>1</rows>\n  <cols>4</cols>\n  <dt>d</dt>\n  <data>\n    -0.2 0.1 0.001 \
+         -0.002</data></distortion_coefficients>\n<xi>1.5</xi>\n</opencv_storage>\n",
+        "cam0:\n  camera_model: omni\n  intrinsics: [1.5, 900.0, 910.0, 640.0, 480.0]\n  distortion_model: radtan\n  \
+         distortion_coeffs: [-0.2, 0.1, 0.001, -0.002]\n  T_cn_cnm1: [[1, 0], [0, 1]]\n",
+        "K: [900, 0, 640, 0, 910, 480, 0, 0, 1]\nD: [-0.2, 0.1, 0.001, -0.002]\nxi: 1.5\n",
+        "K: [[900, 0, 640], [0, 910, 480], [0, 0, 1]]\nD: [[-0.2, 0.1, 0.001, -0.002]]\nxi: [1.5]\n",
+    ];
+    for file in others {
+        assert_eq!(camera(file), omnidir, "{file}");
+    }
+    let kalibr = others[1].replace("T_cn_cnm1", "resolution: [1280, 960]\n  T_cn_cnm1");
+    assert_eq!(camera(&kalibr).image, [1280, 960]);
+}
+
+#[test]
+fn errors_in_other_forms_have_their_line() {
+    let refusal = |file: &str| refusal(MEI.as_bytes(), file.as_bytes());
+    for (file, message) in [
+        ("<a>\n<xi>1</b></a>", "f: line 2: "),
+        ("<a>\n<xi>1</xi>\n<xi>2</xi>\n</a>", "f: line 3: the key `xi` is repeated"),
+        ("<a><xi>1</xi></a>", "f: the key `camera_matrix.data` is missing"),
+        ("cam0:\n  camera_model: pinhole\n", "f: `cam0.camera_model` is `pinhole`, not `omni`"),
+        (
+            "cam0:\n  camera_model: omni\n  distortion_model: equidistant\n",
+            "f: `cam0.distortion_model` is `equidistant`, not `radtan`",
+        ),
+    ] {
+        let found = refusal(file);
+        let found = found.strip_prefix("line 3, column 8: camera.file: ").unwrap();
+        assert!(found.starts_with(message), "{found}");
+    }
+}
+
+#[test]
+fn sections_that_other_programs_add_to_ocamcalibs_file_are_ignored() {
+    let (toml, results) = (file("ocamcalib.toml").unwrap(), text("calib_results.txt"));
+    let more = format!("{results}\n# image circle\n\n640 480 450\n# by\n a program\n");
+    assert_eq!(read(&toml, more.as_bytes()).unwrap(), read(&toml, results.as_bytes()).unwrap());
+}
+
+#[test]
+fn the_file_of_another_program_is_named_with_what_to_do() {
+    let kalibr = "cam0:\n  camera_model: omni\n";
+    for (file, kind) in [
+        (text("calib_results.txt"), "ocamcalib"),
+        (text("omnidir.yml"), "mei"),
+        (text("camodocal.yaml"), "mei"),
+        (kalibr.to_owned(), "mei"),
+        ("<?xml version=\"1.0\"?>\n<opencv_storage>\n</opencv_storage>\n".to_owned(), "mei"),
+    ] {
+        let found = refusal(file.as_bytes(), b"");
+        let expected = format!(
+            "this is the file of another calibration program; name it in a calibration: [camera], kind = \
+             \"{kind}\", file = \"...\""
+        );
+        assert!(found.starts_with(&expected), "{found}");
+    }
+}

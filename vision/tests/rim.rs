@@ -1,7 +1,7 @@
 //! The mirror's rim in drawn images.
 
 use image::{GrayImage, Luma};
-use toposlam_vision::camera::rim::{self, RimError};
+use toposlam_vision::camera::rim::{self, RimDoubt, RimError};
 
 struct Chance(u64);
 
@@ -29,10 +29,21 @@ struct Drawn {
     radius: f64,
     around: f64,
     noise: f64,
+    /// A ring around the mirror: its width as a part of the radius, its brightness, and how far it is to the right.
+    holder: [f64; 3],
+    /// The part of the circle outside of which the scene goes on, so that it has no edge there.
+    open: f64,
 }
 
-const PLAIN: Drawn =
-    Drawn { size: [640, 480], centre: [322.3, 241.8], radius: 224.6, around: 12.0, noise: 4.0 };
+const PLAIN: Drawn = Drawn {
+    size: [640, 480],
+    centre: [322.3, 241.8],
+    radius: 224.6,
+    around: 12.0,
+    noise: 4.0,
+    holder: [0.0; 3],
+    open: 0.0,
+};
 
 /// A disc with a scene in it: patches of light and dark, and two struts across; vignetting, noise.
 fn draw(drawn: &Drawn, seed: u64) -> GrayImage {
@@ -52,8 +63,11 @@ fn draw(drawn: &Drawn, seed: u64) -> GrayImage {
         let from_centre = across.hypot(down);
         let vignette = 1.0 - 0.35 * (from_centre / drawn.radius).powi(2);
         let strut = (0.3 * across + 0.95 * down).abs() < 0.012 * from_centre;
-        if from_centre > drawn.radius {
-            drawn.around
+        let bearing = down.atan2(across) / std::f64::consts::TAU + 0.5;
+        let [width, brightness, right] = drawn.holder;
+        if from_centre > drawn.radius && bearing >= drawn.open {
+            let is_holder = (across - right).hypot(down) < (1.0 + width) * drawn.radius;
+            if is_holder { brightness } else { drawn.around }
         } else if strut || from_centre < 0.15 * drawn.radius {
             20.0
         } else {
@@ -124,8 +138,14 @@ fn noise_does_not_hide_the_rim() {
 
 #[test]
 fn a_large_image_is_as_good() {
-    let drawn =
-        Drawn { size: [1280, 960], centre: [652.4, 470.7], radius: 447.2, around: 9.0, noise: 5.0 };
+    let drawn = Drawn {
+        size: [1280, 960],
+        centre: [652.4, 470.7],
+        radius: 447.2,
+        around: 9.0,
+        noise: 5.0,
+        ..PLAIN
+    };
     found(&drawn, 2, 3);
 }
 
@@ -137,7 +157,14 @@ fn without_a_mirror_there_is_no_rim() {
         GrayImage::from_fn(320, 240, |_, _| Luma([(100.0 + 20.0 * chance.noise()) as u8]))
     };
     for seed in 1..20 {
-        assert!(matches!(rim::find(&[noise(seed), noise(99 * seed)]), Err(RimError::NoRim)));
+        let found = rim::find(&[noise(seed), noise(99 * seed)]);
+        let is_none = match &found {
+            Err(RimError::Uncertain { doubt, .. }) => {
+                matches!(doubt, RimDoubt::NoEdge | RimDoubt::Dark)
+            }
+            found => *found == Err(RimError::NoRim),
+        };
+        assert!(is_none, "{seed}: {found:?}");
     }
     for value in [0, 128, 255] {
         let flat = GrayImage::from_pixel(320, 240, Luma([value]));
@@ -146,6 +173,42 @@ fn without_a_mirror_there_is_no_rim() {
     // A disc darker than its surroundings is not a mirror.
     let drawn = Drawn { around: 250.0, ..PLAIN };
     assert!(rim::find(&images(&drawn, 2, 5)).is_err());
+}
+
+#[test]
+fn the_inner_border_of_a_narrow_dark_holder_is_the_rim() {
+    for (width, right) in [(0.03, 0.0), (0.08, 0.0), (0.08, 3.5)] {
+        let holder = [width, 8.0, right];
+        found(&Drawn { radius: 190.0, around: 130.0, holder, ..PLAIN }, 2, 4);
+    }
+}
+
+#[test]
+fn of_circles_around_one_centre_both_are_named_and_neither_is_found() {
+    let wide = [([0.17, 12.0, 0.0], 130.0), ([0.17, 230.0, 2.0], 12.0), ([0.3, 240.0, 0.0], 60.0)];
+    let narrow = [([0.035, 235.0, 0.0], 12.0), ([0.08, 240.0, 1.0], 50.0)];
+    for (number, (holder, around)) in wide.into_iter().chain(narrow).enumerate() {
+        let drawn = Drawn { radius: 170.0, around, holder, ..PLAIN };
+        let error = rim::find(&images(&drawn, 1, 6)).unwrap_err();
+        let RimError::Uncertain { doubt: RimDoubt::Nested, circles } = &error else {
+            panic!("{number}: {error:?}")
+        };
+        let [u, v] = drawn.centre;
+        for expected in [[u, v, drawn.radius], [u + holder[2], v, drawn.radius * (1.0 + holder[0])]]
+        {
+            let is_near = |circle: &[f64; 3]| {
+                circle.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1.0)
+            };
+            assert!(circles.iter().any(is_near), "{number}: {expected:?} {circles:?}");
+        }
+    }
+}
+
+#[test]
+fn a_clear_leader_is_the_rim_if_two_fifths_of_it_are_seen() {
+    for seed in 0..3 {
+        found(&Drawn { open: 0.6, noise: 1.0, ..PLAIN }, 1, seed);
+    }
 }
 
 #[test]

@@ -24,8 +24,8 @@ use crate::cli::{
 ///
 /// Use a few images (PNG or JPEG) that one camera took from different places; often one is enough. The
 /// border of the image may cut off parts of the mirror's rim, and what is seen just inside of the rim may
-/// be as dark as what is outside. If the rim is not certain, no calibration is written: then take more
-/// images, or set the rim with --rim. The focal length is computed from the rim and from the mirror's
+/// be as dark as what is outside. If the rim is not certain, no calibration is written: the error names the
+/// likeliest circles as --rim options, which --picture draws over the image. The focal length is computed from the rim and from the mirror's
 /// radius and distance, which you measure and write into the file of --initial.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
@@ -194,10 +194,14 @@ impl CalibrateArguments {
 
     /// The failure if no rim was found.
     fn no_rim(&self, error: RimError) -> CliError {
-        let error = match error {
-            RimError::NoRim | RimError::Ambiguous { .. } | RimError::Uncertain { .. } => {
+        let error = match &error {
+            RimError::NoRim => format!("{error}; set it with --rim U,V,R"),
+            RimError::Uncertain { circles, .. } => {
+                let options = circles.iter().map(|[u, v, r]| format!("--rim {u:.1},{v:.1},{r:.1}"));
+                let options: Vec<String> = options.collect();
+                let options = options.join(" or ");
                 format!(
-                    "{error}; take more images from different places, or set it with --rim U,V,R"
+                    "{error}; try these circles, the likeliest first, with --picture: {options}"
                 )
             }
             RimError::NoImage | RimError::Sizes { .. } | RimError::TooSmall(_) => error.to_string(),

@@ -26,9 +26,9 @@ use report::{LeftOut, TrainingReport};
 /// Learn the colours of a building's floor, stripe and marker from labelled images
 ///
 /// Each image of the robot's camera (PNG or JPEG) has a PNG of the same name and size that labels
-/// every pixel by its colour. Floor, stripe and marker must occur. Pixels beyond 3 m, on the robot's
-/// body and outside the mirror are ignored. Images that are too dark or too bright are left out and
-/// reported.
+/// every pixel by its colour. Floor and stripe must occur; without a labelled marker, sensing with these
+/// colours sees no marker. Pixels beyond 3 m, on the robot's body and outside the mirror are ignored.
+/// Images that are too dark or too bright are left out and reported.
 #[derive(clap::Args)]
 #[command(
     override_usage = "\

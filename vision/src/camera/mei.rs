@@ -1,5 +1,5 @@
-//! The unified model with a unit sphere, as OpenCV's omnidir and camodocal calibrate it, and the YAML
-//! files that they write.
+//! The unified model with a unit sphere, as OpenCV's omnidir, camodocal and Kalibr calibrate it, and the
+//! files that they write: YAML, and OpenCV's XML.
 //!
 //! C. Mei, P. Rives: Single view point omnidirectional camera calibration from planar grids. ICRA 2007.
 //! A point is projected onto the unit sphere around the viewpoint, then from xi above the sphere's middle
@@ -12,7 +12,7 @@ use super::{
     ViewingRay,
     optics_file::{OpticsFileError, shown, side_of_image, within},
     root::{first_change, polynomial, root},
-    scaled_place, yaml,
+    scaled_place, xml, yaml,
 };
 
 #[derive(Clone, Debug, PartialEq)]
@@ -46,18 +46,26 @@ const CAMODOCAL: [&str; 9] = [
     "projection_parameters.gamma2",
     "projection_parameters.v0",
 ];
-/// Those of OpenCV's omnidir, by either name.
-const OMNIDIR: [[&str; 2]; 3] = [
-    ["xi", "xi.data"],
-    ["camera_matrix.data", "K.data"],
-    ["distortion_coefficients.data", "D.data"],
+/// Those of OpenCV's omnidir, by any of their names, and as a matrix or a plain list.
+const OMNIDIR: [[&str; 4]; 3] = [
+    ["xi", "xi.data", "Xi", "Xi.data"],
+    ["camera_matrix.data", "K.data", "camera_matrix", "K"],
+    ["distortion_coefficients.data", "D.data", "distortion_coefficients", "D"],
+];
+/// Those of Kalibr's first camera.
+const KALIBR: [&str; 5] = [
+    "cam0.camera_model",
+    "cam0.distortion_model",
+    "cam0.intrinsics",
+    "cam0.distortion_coeffs",
+    "cam0.resolution",
 ];
 /// The other keys.
 const SHARED: [&str; 3] = ["image_width", "image_height", "model_type"];
 
 impl Mei {
-    /// Reads the YAML of OpenCV's omnidir (K, xi, D: also `camera_matrix`, `distortion_coefficients`)
-    /// or of camodocal (`model_type: MEI`).
+    /// Reads the YAML or XML of OpenCV's omnidir (K, xi, D: also `camera_matrix`, `distortion_coefficients`),
+    /// or the YAML of camodocal (`model_type: MEI`) or Kalibr (`camera_model: omni` with `radtan`).
     ///
     /// Reading takes at most 512 bytes of memory for each byte of the file, and 65536 besides.
     ///
@@ -65,16 +73,23 @@ impl Mei {
     /// Returns an error if the file is not as it should be. No bytes make it panic.
     pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
         let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
-        let known = [&SHARED[..], &CAMODOCAL, OMNIDIR.as_flattened()].concat();
-        let found = yaml::values(text, &known)?;
+        let known = [&SHARED[..], &CAMODOCAL, OMNIDIR.as_flattened(), &KALIBR].concat();
+        let is_xml = text.trim_start().starts_with('<');
+        let found = if is_xml { xml::values(text, &known)? } else { yaml::values(text, &known)? };
         let side = |key| side_of_image(key, found.number(key)?);
         let image = match ["image_width", "image_height"].map(|key| found.has(key)) {
+            [false, false] if found.has("cam0.resolution") => {
+                let [width, height] = found.numbers("cam0.resolution")?;
+                Some([side_of_image("the width", width)?, side_of_image("the height", height)?])
+            }
             [false, false] => None,
             _ => Some([side("image_width")?, side("image_height")?]),
         };
         let (xi, [k1, k2, p1, p2], [focal_u, skew, centre_u, focal_v, centre_v]) =
             if found.has("model_type") || found.has("mirror_parameters.xi") {
                 camodocal(&found)?
+            } else if found.has("cam0.camera_model") {
+                kalibr(&found)?
             } else {
                 omnidir(&found)?
             };
@@ -232,9 +247,7 @@ impl Mei {
 type Numbers = (f64, [f64; 4], [f64; 5]);
 
 fn camodocal(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
-    if let Some(model) = found.text("model_type").filter(|&model| model != "MEI") {
-        return Err(OpticsFileError::OtherModel(shown(model)));
-    }
+    expect_model(found, "model_type", "MEI")?;
     let mut numbers = [0.0; 9];
     for (number, key) in numbers.iter_mut().zip(CAMODOCAL) {
         *number = found.number(key)?;
@@ -243,9 +256,28 @@ fn camodocal(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
     Ok((xi, [k1, k2, p1, p2], [gamma1, 0.0, u0, gamma2, v0]))
 }
 
+/// Kalibr's `omni` is this model, and its `radtan` this distortion.
+fn kalibr(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
+    expect_model(found, "cam0.camera_model", "omni")?;
+    expect_model(found, "cam0.distortion_model", "radtan")?;
+    let [xi, gamma1, gamma2, u0, v0] = found.numbers("cam0.intrinsics")?;
+    let distortion = found.numbers("cam0.distortion_coeffs")?;
+    Ok((xi, distortion, [gamma1, 0.0, u0, gamma2, v0]))
+}
+
+fn expect_model(
+    found: &yaml::Values<'_>,
+    key: &'static str,
+    expected: &'static str,
+) -> Result<(), OpticsFileError> {
+    match found.text(key).filter(|&model| model != expected) {
+        None => Ok(()),
+        Some(model) => Err(OpticsFileError::OtherModel { key, found: shown(model), expected }),
+    }
+}
+
 fn omnidir(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
-    let [xi, matrix, distortion] =
-        OMNIDIR.map(|[one, other]| if found.has(other) { other } else { one });
+    let [xi, matrix, distortion] = OMNIDIR.map(|keys| found.first_of(&keys));
     let matrix: [f64; 9] = found.numbers(matrix)?;
     let [xi] = found.numbers(xi)?;
     let distortion = found.numbers(distortion)?;

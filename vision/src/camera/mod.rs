@@ -15,6 +15,7 @@ pub mod rim;
 mod root;
 mod spherical;
 pub mod unchanging;
+mod xml;
 mod yaml;
 
 use nalgebra::{Matrix2, Point2, Point3, Vector3};

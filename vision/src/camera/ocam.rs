@@ -157,7 +157,7 @@ impl OCam {
     }
 }
 
-/// The lines of a file that are neither empty nor comments, each with its number.
+/// The lines of a file that are not empty, each with its number.
 struct Lines<'a> {
     lines: Box<dyn Iterator<Item = (usize, &'a str)> + 'a>,
 }
@@ -165,13 +165,12 @@ struct Lines<'a> {
 impl<'a> Lines<'a> {
     fn new(text: &'a str) -> Self {
         let lines = (1..).zip(text.lines().map(str::trim));
-        Self {
-            lines: Box::new(lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))),
-        }
+        Self { lines: Box::new(lines.filter(|(_, line)| !line.is_empty())) }
     }
 
     fn next(&mut self, what: &'static str) -> Result<(usize, Vec<f64>), OpticsFileError> {
-        let (line, text) = self.lines.next().ok_or(OpticsFileError::EndsBefore(what))?;
+        let mut lines = self.lines.by_ref().skip_while(|(_, line)| line.starts_with('#'));
+        let (line, text) = lines.next().ok_or(OpticsFileError::EndsBefore(what))?;
         let numbers = text.split_whitespace().map(|word| finite(word, line));
         Ok((line, numbers.collect::<Result<_, _>>()?))
     }
@@ -198,7 +197,9 @@ impl<'a> Lines<'a> {
         Ok(numbers)
     }
 
+    /// Other programs add sections, each after a comment.
     fn end(&mut self) -> Result<(), OpticsFileError> {
-        self.lines.next().map_or(Ok(()), |(line, _)| Err(OpticsFileError::GoesOn { line }))
+        let next = self.lines.next().filter(|(_, text)| !text.starts_with('#'));
+        next.map_or(Ok(()), |(line, _)| Err(OpticsFileError::GoesOn { line }))
     }
 }

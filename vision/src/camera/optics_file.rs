@@ -27,8 +27,8 @@ pub enum OpticsFileError {
     Twice { line: usize, key: String },
     #[error("`{key}` has {found} numbers; it must have {expected}")]
     Count { key: &'static str, found: usize, expected: usize },
-    #[error("`model_type` is `{0}`, not `MEI`")]
-    OtherModel(String),
+    #[error("`{key}` is `{found}`, not `{expected}`")]
+    OtherModel { key: &'static str, found: String, expected: &'static str },
     #[error("{what} is {value}; it must be a whole number")]
     NotWhole { what: &'static str, value: f64 },
     #[error("{what} is {value}; it must be between {low} and {high}")]

@@ -29,7 +29,7 @@ pub(super) fn values<'k>(
     // OpenCV's files begin with a directive that is not YAML; in older ones no `---` follows.
     let first = text.lines().next().unwrap_or_default();
     let rest = if first.starts_with("%YAML:") { &text[first.len()..] } else { text };
-    let mut values = Values { known, found: BTreeMap::new(), path: Vec::new() };
+    let mut values = Values::empty(known);
     for event in Parser::new_from_str(rest) {
         let (event, span) = event.map_err(|error| OpticsFileError::Syntax {
             line: error.marker().line(),
@@ -53,15 +53,31 @@ pub(super) fn values<'k>(
     Ok(values)
 }
 
-impl Values<'_> {
+impl<'k> Values<'k> {
+    pub(super) fn empty(known: &'k [&'static str]) -> Self {
+        Self { known, found: BTreeMap::new(), path: Vec::new() }
+    }
+
+    /// Adds the words of a key, if it is known.
+    pub(super) fn add(
+        &mut self,
+        key: &str,
+        line: usize,
+        words: impl Iterator<Item = String>,
+    ) -> Result<(), OpticsFileError> {
+        let Some(key) = self.known.iter().find(|known| **known == key) else { return Ok(()) };
+        match self.found.insert(key, (line, words.collect())) {
+            None => Ok(()),
+            Some(_) => Err(OpticsFileError::Twice { line, key: (*key).to_owned() }),
+        }
+    }
+
     fn word(&mut self, word: &str, line: usize) -> Result<(), OpticsFileError> {
         if let Some(Inside::Mapping(key @ None)) = self.path.last_mut() {
             *key = Some(word.to_owned());
             return match self.known_key() {
-                Some(key) if self.found.insert(key, (line, Vec::new())).is_some() => {
-                    Err(OpticsFileError::Twice { line, key: key.to_owned() })
-                }
-                _ => Ok(()),
+                Some(key) => self.add(key, line, std::iter::empty()),
+                None => Ok(()),
             };
         }
         if let Some((_, words)) = self.known_key().and_then(|key| self.found.get_mut(key)) {
@@ -92,9 +108,10 @@ impl Values<'_> {
         }
     }
 
-    /// The known key that the parser is under: in mappings, perhaps in a list in them.
+    /// The known key that the parser is under: in mappings, perhaps in lists in them.
     fn known_key(&self) -> Option<&'static str> {
-        let lists = usize::from(matches!(self.path.last(), Some(Inside::List)));
+        let is_list = |inside: &&Inside| matches!(inside, Inside::List);
+        let lists = self.path.iter().rev().take_while(is_list).count();
         let mappings = &self.path[..self.path.len() - lists];
         if mappings.len() > DEPTH {
             return None;
@@ -112,6 +129,13 @@ impl Values<'_> {
 
     pub(super) fn has(&self, key: &str) -> bool {
         self.found.contains_key(key)
+    }
+
+    /// The first of these keys that has a value, or else the first one.
+    pub(super) fn first_of(&self, keys: &[&'static str]) -> &'static str {
+        let has_words =
+            |key: &&&str| self.found.get(**key).is_some_and(|(_, words)| !words.is_empty());
+        keys.iter().find(has_words).unwrap_or(&keys[0])
     }
 
     /// The word of a key, if there is one.

@@ -15,12 +15,12 @@
 //! mask = "mask.png"            # optional: white where the floor can be seen
 //! ```
 //!
-//! For a camera that OCamCalib, OpenCV's omnidir or camodocal has calibrated, the calibration names
-//! their file:
+//! For a camera that OCamCalib, OpenCV's omnidir, camodocal or Kalibr has calibrated, the calibration
+//! names their file:
 //!
 //! ```toml
 //! [camera]
-//! kind = "ocamcalib"           # or "mei", for OpenCV's omnidir and camodocal
+//! kind = "ocamcalib"           # or "mei", for OpenCV's omnidir, camodocal and Kalibr's omni
 //! file = "calib_results.txt"   # beside this file
 //! viewpoint_height = 1.02      # metres above the floor
 //! ahead = 90.0
@@ -65,6 +65,12 @@ pub enum CalibrationErrorKind {
          {low} and {high}"
     )]
     RimOutOfRange { rim: f64, low: f64, high: f64 },
+    #[error(
+        "this is the file of another calibration program; name it in a calibration: [camera], kind = \
+         \"{kind}\", file = \"...\", viewpoint_height = METRES, ahead = DEGREES, seen_from = \"below\" \
+         or \"above\""
+    )]
+    OtherProgram { kind: &'static str },
     #[error("{file}: cannot be read: {error}")]
     Unreadable { file: String, error: io::Error },
     #[error("{file}: {error}")]

@@ -3,7 +3,9 @@
 use std::{io, ops::RangeInclusive};
 
 use nalgebra::Point2;
-use toposlam_model::format::document::{Document, DocumentTable, DocumentValue};
+use toposlam_model::format::document::{
+    Document, DocumentError, DocumentTable, DocumentValue, TextPosition,
+};
 
 use super::{CalibrationError, CalibrationErrorKind, SIDES};
 use crate::camera::{
@@ -37,7 +39,7 @@ enum Kind {
 /// Returns an error if the bytes are not a calibration, or if a file that it names cannot be used. No
 /// bytes make it panic.
 pub fn read(bytes: &[u8], files: &mut Files<'_>) -> Result<Camera, CalibrationError> {
-    let document = Document::parse_toml(bytes)?;
+    let document = Document::parse_toml(bytes).map_err(|error| of_other_program(bytes, error))?;
     let value = document.root().table(&["camera"])?.need("camera")?;
     let table = value.any_table()?;
     let kind = table.need("kind")?.word(&[
@@ -61,6 +63,23 @@ pub fn read(bytes: &[u8], files: &mut Files<'_>) -> Result<Camera, CalibrationEr
         table.need("seen_from")?.word(&[("below", SeenFrom::Below), ("above", SeenFrom::Above)])?;
     let mask = table.get("mask").map(|mask| read_mask(mask, files, image)).transpose()?;
     Ok(Camera { image, ahead, seen_from, optics, mask })
+}
+
+/// The error for bytes that are no TOML; the files of other programs are none.
+fn of_other_program(bytes: &[u8], error: DocumentError) -> CalibrationError {
+    const MARKS: [&str; 4] = ["opencv-matrix", "opencv_storage", "model_type:", "camera_model:"];
+    let text = String::from_utf8_lossy(bytes);
+    let kind = if OCam::read("", bytes, 1.0).is_ok() {
+        "ocamcalib"
+    } else if MARKS.iter().any(|mark| text.contains(mark)) {
+        "mei"
+    } else {
+        return error.into();
+    };
+    CalibrationError {
+        position: TextPosition::default(),
+        kind: CalibrationErrorKind::OtherProgram { kind },
+    }
 }
 
 fn spherical_mirror(value: DocumentValue<'_>) -> Result<([u32; 2], OpticsModel), CalibrationError> {

@@ -1,8 +1,9 @@
 //! The mirror's rim in images: a circle with an edge all along it.
 //!
-//! The images are averaged, which leaves little of the scene; the edge may be of either sign. Of a dark ring around
-//! the mirror, the rim is the inner border. No circle is better than a wrong one: the rim must be seen on enough
-//! bearings, no other circle may be seen about as well, and it must stay the same if any part of it is left out.
+//! The images are averaged, which leaves little of the scene; the edge may be of either sign. Of a narrow dark ring
+//! around the mirror, the rim is the inner border. Of other circles around one centre, it is not known which one is the
+//! rim. No circle is better than a wrong one: the rim must be seen on enough bearings, no other circle may be seen about
+//! as well, and it must stay the same if any part of it is left out.
 //!
 //! Lengths are in pixels. A *unit* is a pixel in a circle of radius 450, and more in a larger one. Brightness is that of
 //! images whose mean is 64.
@@ -10,28 +11,26 @@
 mod brightness;
 mod circle;
 mod edges;
+mod fit;
+mod rings;
 mod search;
 
-use std::f64::consts::TAU;
-
 use image::GrayImage;
-use nalgebra::{Point2, distance};
+use nalgebra::Point2;
 use thiserror::Error;
 
 use brightness::Brightness;
 use circle::Circle;
 use edges::{BEARINGS, CircleEdge, CircleEdges, unit};
+use fit::{CERTAIN, CircleFit, EVERY, REACH};
 
-use crate::{geometry, least_squares::median};
-
-/// Edges are searched for up to this many units from a circle, ... Views.
-const REACH: f64 = 8.0;
-/// ... and the steepest one must be within this many. Views.
-const NEAR: f64 = 1.0;
 /// The least part of the full circle that must be seen. Views.
 const LEAST_SEEN: f64 = 0.14;
-/// The least part of the circle in the image that must be seen. Views.
-const LEAST_OF_VISIBLE: f64 = 0.45;
+/// The least part of the circle in the image that must be seen, ... Views.
+const LEAST_SHARE: f64 = 0.45;
+/// ... and the least one of a circle whose score is so many times that of any other. Views.
+const LEAST_LEADING: f64 = 0.3;
+const CLEAR_LEAD: f64 = 3.0;
 /// The least part of the edges that must be brighter inside than outside. Views.
 const LEAST_FALLS: f64 = 0.15;
 /// Another circle must have less than this part of the rim's score. Views.
@@ -39,20 +38,10 @@ const LEAD: f64 = 0.6;
 /// Circles that differ by less, as a part of the radius, are the same. Geometry: a calibration allows the rim to be off
 /// by 2 %.
 const SAME: f64 = 0.02;
-/// The greatest change of centre and radius if a part of what is seen is left out, as a part of the radius. Views.
-const CERTAIN: f64 = 0.01;
-/// The number of parts of which each is left out once. Views.
-const PARTS: usize = 8;
-/// The number of directions in which other circles that share an arc are tried. Views.
-const SIDES: usize = 12;
-/// A dark ring around the mirror is at most this part of the outer radius wide. Views.
-const WIDEST_RING: f64 = 0.12;
-/// The inner border of a dark ring is seen on at least this part of the bearings of the outer one. Views.
-const LEAST_INNER: f64 = 0.25;
-/// Smaller differences of brightness are noise. Views.
-const NOISE: f64 = 6.0;
-/// Many circles are compared on one bearing in this many. Views: faster, with the same results.
-const EVERY: usize = 4;
+/// Of the circles that are searched, the best ones are fitted exactly. Views.
+const KEPT: usize = 40;
+/// The most circles that an error names.
+const NAMED: usize = 3;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rim {
@@ -65,7 +54,8 @@ pub struct Rim {
     pub places: Vec<Point2<f64>>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+/// Why no rim is certain.
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum RimError {
     #[error("there is no image")]
     NoImage,
@@ -76,21 +66,31 @@ pub enum RimError {
     Sizes { number: usize, found: [u32; 2], expected: [u32; 2] },
     #[error("the images are {} by {} pixels, too few to find a mirror", .0[0], .0[1])]
     TooSmall([u32; 2]),
-    #[error(
-        "no mirror is seen in the images: no circle has an edge along enough of its circumference"
-    )]
+    #[error("no mirror is seen in the images: no circle has an edge along its circumference")]
     NoRim,
+    /// Circles are centre and radius in pixels, the likeliest first.
+    #[error("the rim is not certain: {doubt}")]
+    Uncertain { doubt: RimDoubt, circles: Vec<[f64; 3]> },
+}
+
+/// What is uncertain about a rim.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum RimDoubt {
+    #[error("no circle has an edge along enough of its circumference")]
+    NoEdge,
+    #[error("along the best circle it is darker inside than outside, as in a hole or a holder")]
+    Dark,
     #[error(
-        "the rim is not certain: a circle of radius {:.0} around {:.0}, {:.0} is seen about as well as \
-         one of radius {:.0} around {:.0}, {:.0}",
-        .other[2], .other[0], .other[1], .best[2], .best[0], .best[1]
+        "the best circle and another one around the same centre may be the borders of a holder"
     )]
-    Ambiguous { best: [f64; 3], other: [f64; 3] },
+    Nested,
+    #[error("another circle is seen about as well as the best one")]
+    Rival,
     #[error(
-        "the rim is not certain: an edge is seen along {:.0} % of a circle of radius {:.0}, which does \
-         not give its radius within {} %", 100.0 * .seen, .radius, 100.0 * CERTAIN
+        "an edge is seen along {:.0} % of the best circle, which does not give its radius within {} %",
+        100.0 * .0, 100.0 * CERTAIN
     )]
-    Uncertain { radius: f64, seen: f64 },
+    Short(f64),
 }
 
 /// The rim in images of one camera.
@@ -99,51 +99,114 @@ pub enum RimError {
 /// Returns an error if there is none, if it is not certain, or if the images differ in size.
 pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
     let mean = Brightness::mean(images)?;
-    let mut fits: Vec<CircleFit> = search::candidates(&mean)
-        .into_iter()
-        .map(|circle| CircleFit::fitted(&mean, circle, EVERY))
-        .collect();
-    fits.retain(|fit| fit.is_plausible(&mean));
-    fits.sort_by(|one, other| other.score().total_cmp(&one.score()));
-    let first = fits.first().ok_or(RimError::NoRim)?.circle;
-    let best = CircleFit::fitted(&mean, first, 1);
-    if !best.is_seen() {
-        return Err(RimError::NoRim);
+    let mut fits = fits(&mean);
+    let (mut first_doubt, mut named) = (None, Vec::new());
+    while !fits.is_empty() {
+        let leader = fits.remove(0);
+        match rim(&mean, &leader, &fits, first_doubt.is_some()) {
+            Ok(rim) => return Ok(rim.rim()),
+            Err((doubt, circles)) => {
+                first_doubt.get_or_insert(doubt);
+                fits.retain(|fit| !circles.iter().any(|circle| fit.circle.is_near(circle, SAME)));
+                named.extend(circles);
+                // What is darker inside is no mirror, so it is no rival of one either.
+                if !matches!(doubt, RimDoubt::Dark) {
+                    break;
+                }
+            }
+        }
     }
-    let rim = best.inside_of_ring(&mean).unwrap_or_else(|| best.clone());
-    if rim.falls() < LEAST_FALLS {
-        return Err(RimError::NoRim);
+    named.extend(fits.iter().map(|fit| fit.circle));
+    let mut circles: Vec<Circle> = Vec::new();
+    for circle in named {
+        if !circles.iter().any(|other| other.is_near(&circle, 0.5 * SAME)) {
+            circles.push(circle);
+        }
     }
-    let is_ring = rim.circle != best.circle;
-    // The inner border of a ring must be seen as well as any rim: dark furniture has an edge, too.
-    // Of a narrow ring, both borders are near enough.
-    let is_narrow = rim.circle.is_near(&best.circle, SAME);
-    if is_ring && !is_narrow && rim.seen < LEAST_SEEN {
-        return Err(ambiguous(&best.circle, &rim.circle));
-    }
-    let is_other = |fit: &CircleFit| {
-        !fit.circle.is_near(&rim.circle, SAME)
-            && !fit.circle.is_near(&best.circle, SAME)
-            && fit.score() > LEAD * best.score()
-            && !fit.is_outside_of_ring(&mean, &rim.circle)
-    };
-    if let Some(other) = fits.iter().find(|fit| is_other(fit)) {
-        return Err(ambiguous(&best.circle, &other.circle));
-    }
-    if (!is_ring || is_narrow)
-        && let Some(other) = best.beside(&mean).into_iter().find(is_other)
-    {
-        return Err(ambiguous(&best.circle, &other.circle));
-    }
-    if !best.is_certain() {
-        return Err(RimError::Uncertain { radius: rim.circle.radius, seen: best.seen });
-    }
-    Ok(rim.rim())
+    circles.truncate(NAMED);
+    let circles = circles.iter().map(|circle| [circle.centre.x, circle.centre.y, circle.radius]);
+    let circles = circles.collect();
+    Err(first_doubt.map_or(RimError::NoRim, |doubt| RimError::Uncertain { doubt, circles }))
 }
 
-fn ambiguous(best: &Circle, other: &Circle) -> RimError {
-    let numbers = |circle: &Circle| [circle.centre.x, circle.centre.y, circle.radius];
-    RimError::Ambiguous { best: numbers(best), other: numbers(other) }
+/// The circles with the most edges, best first.
+fn fits(image: &Brightness) -> Vec<CircleFit> {
+    let fitted = |circles: Vec<Circle>, every: usize| {
+        let fits = circles.into_iter().map(|circle| CircleFit::fitted(image, circle, every));
+        let mut fits: Vec<CircleFit> = fits.filter(|fit| fit.is_plausible(image)).collect();
+        fits.sort_by(|one, other| other.score().total_cmp(&one.score()));
+        let mut kept: Vec<CircleFit> = Vec::new();
+        for fit in fits {
+            if !kept.iter().any(|other| fit.circle.is_near(&other.circle, 2e-3)) {
+                kept.push(fit);
+            }
+        }
+        kept
+    };
+    let mut roughly = fitted(search::candidates(image), 3 * EVERY);
+    roughly.truncate(KEPT);
+    fitted(roughly.iter().map(|fit| fit.circle).collect(), EVERY)
+}
+
+/// The rim if the best circle is its, or a doubt about that and the circles that may be the rim.
+fn rim(
+    image: &Brightness,
+    leader: &CircleFit,
+    others: &[CircleFit],
+    is_second: bool,
+) -> Result<CircleFit, (RimDoubt, Vec<Circle>)> {
+    let best = CircleFit::fitted(image, leader.circle, 1);
+    let rings = rings::around(image, &best);
+    let (inner, outer) = match &rings[..] {
+        [only] => (rings::inner_border(image, only), only),
+        [inner, outer] if rings::is_dark_ring(image, &inner.circle, &outer.circle) => {
+            (Some(inner.clone()), outer)
+        }
+        _ => {
+            let mut rings = rings;
+            rings.sort_by(|one, other| other.score().total_cmp(&one.score()));
+            return Err((RimDoubt::Nested, rings.iter().map(|ring| ring.circle).collect()));
+        }
+    };
+    let is_ring = inner.is_some();
+    let rim = inner.unwrap_or_else(|| outer.clone());
+    let circles = || vec![rim.circle, outer.circle];
+    if rim.falling() < LEAST_FALLS * rim.seen {
+        return Err((RimDoubt::Dark, circles()));
+    }
+    let best = if rim.score() > outer.score() { &rim } else { outer };
+    let is_other = |fit: &&CircleFit| {
+        !fit.circle.is_near(&rim.circle, SAME)
+            && !fit.circle.is_near(&outer.circle, SAME)
+            && !rings::is_dark_ring(image, &rim.circle, &fit.circle)
+    };
+    // A circle that has most of its edges in common with the best one is no other.
+    let leads = |fit: &CircleFit| best.score() >= CLEAR_LEAD * fit.score();
+    let is_leading = !is_second
+        && best.share() >= LEAST_LEADING
+        && others.iter().filter(is_other).all(|fit| leads(fit) || fit.is_part_of(best));
+    if best.seen < LEAST_SEEN || (best.share() < LEAST_SHARE && !is_leading) {
+        return Err((RimDoubt::NoEdge, circles()));
+    }
+    // The inner border of a ring must be seen as well as any rim: dark furniture has an edge, too.
+    // Of a narrow ring, both borders are near enough.
+    let is_narrow = rim.circle.is_near(&outer.circle, SAME);
+    if is_ring && !is_narrow && rim.seen < LEAST_SEEN {
+        return Err((RimDoubt::Nested, circles()));
+    }
+    let is_rival = |fit: &&CircleFit| is_other(fit) && fit.score() > LEAD * best.score();
+    if let Some(rival) = others.iter().find(is_rival) {
+        return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
+    }
+    if !is_ring || is_narrow {
+        if let Some(rival) = outer.beside(image).iter().find(is_rival) {
+            return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
+        }
+    }
+    if !best.is_certain() {
+        return Err((RimDoubt::Short(best.seen), circles()));
+    }
+    Ok(rim)
 }
 
 /// What is seen of a rim that is given: its centre and its radius, in pixels.
@@ -160,161 +223,4 @@ pub fn given(images: &[GrayImage], centre: Point2<f64>, radius: f64) -> Result<R
     let edges: Vec<CircleEdge> = on.collect();
     let seen = edges.len() as f64 / BEARINGS as f64;
     Ok(CircleFit { circle, edges, seen, visible: 1.0 }.rim())
-}
-
-#[derive(Clone, Debug)]
-struct CircleFit {
-    circle: Circle,
-    edges: Vec<CircleEdge>,
-    seen: f64,
-    /// The share of the full circle that is in the image.
-    visible: f64,
-}
-
-impl CircleFit {
-    /// The circle through the edges near a circle, on one bearing in `every`.
-    fn fitted(image: &Brightness, mut circle: Circle, every: usize) -> Self {
-        for reach in [6.0, 4.0, 4.0] {
-            let places = CircleEdges::near(image, &circle, reach, every).places();
-            circle = circle.through(&places);
-        }
-        let mut fit = Self::on(image, circle, every);
-        // Once more, without the edges that are not on the circle.
-        let places: Vec<_> = fit.edges.iter().map(|edge| edge.at).collect();
-        if places.len() >= PARTS {
-            fit = Self::on(image, circle.through(&places), every);
-        }
-        fit
-    }
-
-    /// A circle and the edges on it, on one bearing in `every`.
-    fn on(image: &Brightness, circle: Circle, every: usize) -> Self {
-        let found = CircleEdges::near(image, &circle, REACH, every);
-        let near = NEAR * unit(&circle);
-        let on = found.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near);
-        let edges: Vec<CircleEdge> = on.collect();
-        let all = (BEARINGS / every) as f64;
-        let (seen, visible) = (edges.len() as f64 / all, found.visible as f64 / all);
-        Self { circle, edges, seen, visible }
-    }
-
-    /// Whether it can be a mirror: its centre is in the image, and it is neither small nor huge.
-    fn is_plausible(&self, image: &Brightness) -> bool {
-        let Circle { centre, radius } = self.circle;
-        let (width, height) = (image.width as f64, image.height as f64);
-        (0.0..width).contains(&centre.x)
-            && (0.0..height).contains(&centre.y)
-            && (0.2 * width.min(height)..0.75 * width.max(height)).contains(&radius)
-    }
-
-    fn is_seen(&self) -> bool {
-        self.seen >= LEAST_SEEN && self.seen >= LEAST_OF_VISIBLE * self.visible
-    }
-
-    /// How well it is seen: on many bearings, and on most of those on which it is in the image.
-    fn score(&self) -> f64 {
-        self.seen * self.seen / self.visible.max(LEAST_SEEN)
-    }
-
-    /// The part of its edges that are brighter inside than outside.
-    fn falls(&self) -> f64 {
-        let falls = self.edges.iter().filter(|edge| edge.fall > 0.0).count();
-        falls as f64 / self.edges.len().max(1) as f64
-    }
-
-    /// If this is the outer border of a dark ring, the inner one.
-    ///
-    /// Only its radius is fitted: the centre is that of the outer border, which is seen better.
-    fn inside_of_ring(&self, image: &Brightness) -> Option<Self> {
-        let outer = self.circle.radius;
-        let widths =
-            (1..).map(|step| f64::from(step) * 0.004).take_while(|&part| part <= WIDEST_RING);
-        let inner = widths.filter_map(|part| {
-            let circle = Circle { radius: outer * (1.0 - part), ..self.circle };
-            let edges = CircleEdges::near(image, &circle, 3.0, EVERY).edges;
-            let falls = edges.iter().filter(|edge| edge.fall > 0.0);
-            let radius = circle.radius + median(falls.map(|edge| circle.off(edge.at)))?;
-            let fit = Self::on(image, Circle { radius, ..circle }, EVERY);
-            let apart = outer - radius > 4.0 * unit(&circle);
-            let is_inner = apart
-                && fit.seen >= LEAST_INNER * self.seen
-                && fit.falls() >= 0.6
-                && is_dark_between(image, &fit.circle, &self.circle);
-            is_inner.then_some(fit)
-        });
-        let best = inner.max_by(|one, other| one.seen.total_cmp(&other.seen))?;
-        Some(Self::on(image, best.circle, 1))
-    }
-
-    /// Whether this is the outer border of a dark ring around a circle.
-    fn is_outside_of_ring(&self, image: &Brightness, inner: &Circle) -> bool {
-        let width = self.circle.radius - inner.radius;
-        distance(&self.circle.centre, &inner.centre) <= SAME * inner.radius
-            && width > 0.0
-            && width <= WIDEST_RING * self.circle.radius
-            && is_dark_between(image, inner, &self.circle)
-    }
-
-    /// The circles that share an arc with this one, and are nearer or farther on the opposite side: if it is
-    /// the inner border of a ring on one side and the outer border on the other, they are the borders.
-    fn beside(&self, image: &Brightness) -> Vec<Self> {
-        let Circle { centre, radius } = self.circle;
-        let mut fits = Vec::new();
-        for side in 0..SIDES {
-            let towards = geometry::unit(TAU * side as f64 / SIDES as f64);
-            for step in 1..=6 {
-                for sign in [-1.0, 1.0] {
-                    // Half of the difference between the borders, and the same arc on this side.
-                    let shift = 0.01 * f64::from(step) * radius * sign;
-                    let centre = centre - shift * towards;
-                    let circle = Circle { centre, radius: radius + shift };
-                    fits.push(Self::on(image, Self::fitted(image, circle, EVERY).circle, EVERY));
-                }
-            }
-        }
-        fits
-    }
-
-    /// Whether centre and radius stay the same if any part of the edges is left out.
-    fn is_certain(&self) -> bool {
-        let count = self.edges.len();
-        (0..PARTS).all(|part| {
-            let (from, to) = (part * count / PARTS, (part + 1) * count / PARTS);
-            let rest = self.edges[..from].iter().chain(&self.edges[to..]);
-            let places: Vec<_> = rest.map(|edge| edge.at).collect();
-            self.circle.through(&places).is_near(&self.circle, CERTAIN)
-        })
-    }
-
-    fn rim(&self) -> Rim {
-        let places: Vec<_> = self.edges.iter().map(|edge| edge.at).collect();
-        let squares: f64 = places.iter().map(|&place| self.circle.off(place).powi(2)).sum();
-        Rim {
-            centre: self.circle.centre,
-            radius: self.circle.radius,
-            seen: self.seen,
-            spread: (squares / places.len().max(1) as f64).sqrt(),
-            places,
-        }
-    }
-}
-
-/// Whether the ring between two circles can be a mirror's dark holder: on most bearings it is equally
-/// dark, and not brighter than what is outside of it.
-fn is_dark_between(image: &Brightness, inner: &Circle, outer: &Circle) -> bool {
-    let (mut rings, mut darker) = (Vec::new(), 0_usize);
-    for bearing in (0..BEARINGS).step_by(EVERY) {
-        let towards = geometry::unit(TAU * bearing as f64 / BEARINGS as f64);
-        let at = |radius: f64| image.at(outer.centre + radius * towards);
-        let width = outer.radius - inner.radius;
-        let samples = [0.5, 1.5].map(|part| at(inner.radius + part * width));
-        if let [Some(ring), Some(outside)] = samples {
-            rings.push(ring);
-            darker += usize::from(ring < outside + NOISE);
-        }
-    }
-    let median = median(rings.iter().copied()).unwrap_or_default();
-    let even = |ring: &&f64| (**ring - median).abs() < NOISE + 0.25 * median;
-    let most = |count: usize| count as f64 > 0.75 * rings.len() as f64;
-    most(darker) && most(rings.iter().filter(even).count())
 }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::cast_sign_loss, reason = "places inside of an image are not negative")]
 
-use std::{f64::consts::TAU, sync::LazyLock};
+use std::{f64::consts::TAU, ops::Range, sync::LazyLock};
 
 use nalgebra::{Point2, Vector2};
 
@@ -12,10 +12,8 @@ use crate::geometry::unit;
 
 /// The longest side of the image in which all circles are compared. Geometry: time grows with its third power.
 const COARSE: usize = 160;
-/// The number of circles of that image that are followed in larger ones. Views.
-const FOLLOWED: usize = 40;
-/// The number of circles that are then fitted. Views.
-const KEPT: usize = 20;
+/// The number of circles of that image that are followed in larger ones, for each kind of score. Views.
+const FOLLOWED: usize = 150;
 /// The greatest difference of brightness that counts, over two pixels. Views.
 const STEEP: f32 = 24.0;
 /// Edges of this height count half. Views.
@@ -23,6 +21,8 @@ const HALF: f32 = 6.0;
 /// The least part of a circle that must be in the image. Geometry.
 const LEAST_INSIDE: f32 = 0.2;
 
+/// The number of kinds of score of a circle.
+const KINDS: usize = 3;
 /// The number of bearings on which circles of larger images are compared.
 const BEARINGS: usize = 240;
 
@@ -43,11 +43,20 @@ pub(super) fn candidates(image: &Brightness) -> Vec<Circle> {
             *circle = slopes.best_near(circle.scaled(factor as f64 / finer as f64));
         }
         factor = finer;
+        circles = different(circles);
     }
-    circles.sort_by(|one, other| slopes.score(other).total_cmp(&slopes.score(one)));
-    circles.dedup_by(|one, other| one.is_near(other, 1e-3));
-    circles.truncate(KEPT);
     circles
+}
+
+/// The circles without those that are almost the same as one before.
+fn different(circles: Vec<Circle>) -> Vec<Circle> {
+    let mut kept: Vec<Circle> = Vec::new();
+    for circle in circles {
+        if !kept.iter().any(|other| other.is_near(&circle, 2e-3)) {
+            kept.push(circle);
+        }
+    }
+    kept
 }
 
 struct Slopes {
@@ -94,7 +103,7 @@ impl Slopes {
         }
         let least = (0.25 * self.width.min(self.height) as f32) as usize;
         let most = (0.65 * self.width.max(self.height) as f32) as usize;
-        let mut scored = [Vec::new(), Vec::new()];
+        let mut scored = [(); KINDS].map(|()| Vec::new());
         let mut rings = vec![[0.0_f32; 2]; most + 3];
         for v in (self.height / 6..=self.height - self.height / 6).step_by(2) {
             for u in (self.width / 6..=self.width - self.width / 6).step_by(2) {
@@ -113,7 +122,10 @@ impl Slopes {
                     }
                 }
                 for (kind, scored) in scored.iter_mut().enumerate() {
-                    self.peaks([u, v], least, most, |radius| rings[radius][kind], scored);
+                    let ring = |radius: usize| rings[radius][kind.min(1)];
+                    // Scaled to the whole circle; whole circles are preferred to arcs, but not by the last kind.
+                    let power = if kind < 2 { 0.5 } else { 1.0 };
+                    self.peaks([u, v], least..most, power, ring, scored);
                 }
             }
         }
@@ -127,7 +139,7 @@ impl Slopes {
                 if !kept.iter().any(is_near) {
                     kept.push(at);
                 }
-                if kept.len() == FOLLOWED / 2 {
+                if kept.len() == FOLLOWED {
                     break;
                 }
             }
@@ -143,18 +155,18 @@ impl Slopes {
     fn peaks(
         &self,
         [u, v]: [usize; 2],
-        least: usize,
-        most: usize,
+        radii: Range<usize>,
+        power: f32,
         ring: impl Fn(usize) -> f32,
         scored: &mut Vec<Scored>,
     ) {
         let score = |radius: usize| {
             let inside = self.share_inside([u, v], radius);
             let sum: f32 = (radius - 1..=radius + 1).map(&ring).sum();
-            // Scaled to the whole circle, but with a preference for whole circles over arcs.
-            if inside < LEAST_INSIDE { 0.0 } else { sum / (radius as f32 * inside.sqrt()) }
+            if inside < LEAST_INSIDE { 0.0 } else { sum / (radius as f32 * inside.powf(power)) }
         };
-        let scores: Vec<f32> = (least..most).map(score).collect();
+        let least = radii.start;
+        let scores: Vec<f32> = radii.map(score).collect();
         for (number, &score) in scores.iter().enumerate() {
             let around = number.saturating_sub(2)..(number + 3).min(scores.len());
             if score > 0.0 && scores[around].iter().all(|&other| other <= score) {
