@@ -198,10 +198,10 @@ fn rim(
     if let Some(rival) = others.iter().find(is_rival) {
         return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
     }
-    if !is_ring || is_narrow {
-        if let Some(rival) = outer.beside(image).iter().find(is_rival) {
-            return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
-        }
+    if (!is_ring || is_narrow)
+        && let Some(rival) = outer.beside(image).iter().find(is_rival)
+    {
+        return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
     }
     if !best.is_certain() {
         return Err((RimDoubt::Short(best.seen), circles()));
