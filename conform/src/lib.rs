@@ -63,9 +63,9 @@ pub use possible_visits::{PossibleVisits, VisitFit};
 pub use quirks::Quirks;
 pub use recorded_events::RecordedEvents;
 pub use report::{
-    Allowed, ComparedDoors, ConformReports, Contradiction, CoveredCase, DivergenceReport,
-    EventPose, Facts, FoldedReport, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName,
-    RecordedWorld, ReportedEvent, ReportedVisit, RequiredCoverage, SmallestFound, SourceFile,
+    Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
+    FoldedReport, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RecordedWorld,
+    ReportedEvent, ReportedVisit, RequiredCoverage, ScanContradiction, SmallestFound, SourceFile,
     ToleratedQuirk, UnreadLog, WorldFact, case_names,
 };
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};

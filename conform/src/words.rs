@@ -22,9 +22,9 @@ use super::{
     measured_hallways::MeasuredHallways,
     possible_visits::{PossibleVisits, VisitFit},
     report::{
-        Allowed, ComparedDoors, ConformReports, Contradiction, CoveredCase, DivergenceReport,
-        EventPose, Facts, LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName,
-        RequiredCoverage, WorldFact,
+        Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
+        LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RequiredCoverage,
+        ScanContradiction, WorldFact,
     },
     scan_odometry::StampCounts,
     twin::TwinWorld,
@@ -78,7 +78,7 @@ pub fn fault(fault: FaultClass) -> &'static str {
 
 /// The events of a log without a divergence.
 pub fn fits(report: &LogReport) -> String {
-    if let Some(Contradiction { event, .. }) = report.facts.contradiction {
+    if let Some(ScanContradiction { event, .. }) = report.facts.contradiction {
         return format!("The events before event {} fit.", grouped(event as u128));
     }
     let all = match report.events.len() {
@@ -247,7 +247,7 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
 }
 
 /// What does not fit in a laser log.
-fn contradiction(Contradiction { event: number, found, cause }: &Contradiction) -> String {
+fn contradiction(ScanContradiction { event: number, found, cause }: &ScanContradiction) -> String {
     let found = found.as_ref().map_or("end of the log".to_owned(), event);
     format!(
         "event {number} does not fit: {found}; {cause}. What scans show may be wrong where the robot did not drive, \

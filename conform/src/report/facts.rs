@@ -42,7 +42,7 @@ pub struct Facts {
     /// The visits of a laser log as sets of percepts.
     pub possible: Option<PossibleVisits>,
     /// What does not fit in a laser log, and accuses nobody.
-    pub contradiction: Option<Contradiction>,
+    pub contradiction: Option<ScanContradiction>,
     pub skipped_messages: SkippedMessages,
     pub truncated: Option<Truncation>,
     /// The lines of a log of lines that are not read.
@@ -95,7 +95,7 @@ pub struct Facts {
 
 /// An event that does not fit, as the scans show it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Contradiction {
+pub struct ScanContradiction {
     /// Its number, from 1; one more than there are at the end.
     pub event: usize,
     #[serde(skip)]
@@ -192,7 +192,7 @@ impl CheckedLog {
             unreadable_images: extracted.unreadable,
             scans: extracted.scans,
             possible: judgement.possible.clone(),
-            contradiction: judgement.contradiction.as_ref().map(|found| Contradiction {
+            contradiction: judgement.contradiction.as_ref().map(|found| ScanContradiction {
                 event: found.event + 1,
                 found: judgement.events.events.get(found.event).map(|event| event.kind.clone()),
                 cause: found.cause.clone(),

@@ -16,7 +16,8 @@ use toposlam_model::{
 pub(super) use events::MarkerSeen;
 pub use events::{EventPose, PoseName, ReportedEvent, ReportedVisit};
 pub use facts::{
-    ComparedDoors, Contradiction, Facts, MapSize, OpenDoor, RecordedWorld, SmallestFound, WorldFact,
+    ComparedDoors, Facts, MapSize, OpenDoor, RecordedWorld, ScanContradiction, SmallestFound,
+    WorldFact,
 };
 
 use super::{
