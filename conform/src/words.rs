@@ -196,7 +196,9 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
         }
         Some(RunEnding::Mapped) | None => {}
     }
-    if let Some(DivergenceReport { event: 1, cause, .. }) = &report.divergence {
+    let diverges = report.divergence.as_ref().map(|found| (found.event, &found.cause));
+    let contradicts = facts.contradiction.as_ref().map(|found| (found.event, &found.cause));
+    if let Some((1, cause)) = diverges.or(contradicts) {
         if !facts.has_head && facts.world.as_ref().is_some_and(|world| world.start.is_some()) {
             remarks.push("the log may begin elsewhere: --start any tries every start".to_owned());
         }
