@@ -396,6 +396,15 @@ proptest! {
     }
 }
 
+#[test]
+fn a_mask_hides_a_drawn_polygon_inside_of_the_rim() {
+    let mut mask = Mask::circle("m", [20, 10], [9.0, 5.0].into(), 4.5);
+    assert!(mask.sees([13, 5]) && !mask.sees([14, 5]) && !mask.sees([9, 0]));
+    // An arrow's head: its notch is seen.
+    mask.hide(&[[5.5, 2.5], [12.5, 2.5], [9.0, 4.8], [12.5, 7.5], [5.5, 7.5]]);
+    assert!(!mask.sees([6, 5]) && !mask.sees([11, 3]) && mask.sees([11, 5]) && mask.sees([9, 8]));
+}
+
 /// The numbers of a fisheye in OpenCV's form, and its calibration.
 fn lens(numbers: &str, more: &str) -> Camera {
     let text = format!(

@@ -116,7 +116,9 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
             }
         }
     }
-    named.extend(fits.iter().map(|fit| fit.circle));
+    if first_doubt != Some(RimDoubt::Nested) {
+        named.extend(fits.iter().map(|fit| fit.circle));
+    }
     let mut circles: Vec<Circle> = Vec::new();
     for circle in named {
         if !circles.iter().any(|other| other.is_near(&circle, 0.5 * SAME)) {
