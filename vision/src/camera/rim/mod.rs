@@ -104,6 +104,11 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
     while !fits.is_empty() {
         let leader = fits.remove(0);
         match rim(&mean, &leader, &fits, first_doubt.is_some()) {
+            // In a dark circle that may be the mirror, a disc may be the robot's body.
+            Ok(rim) if named.iter().any(|dark: &Circle| dark.off(rim.circle.centre) < 0.0) => {
+                named.push(rim.circle);
+                break;
+            }
             Ok(rim) => return Ok(rim.rim()),
             Err((doubt, circles)) => {
                 first_doubt.get_or_insert(doubt);
@@ -200,10 +205,10 @@ fn rim(
     if let Some(rival) = others.iter().find(is_rival) {
         return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
     }
-    if !is_ring || is_narrow {
-        if let Some(rival) = outer.beside(image).iter().find(is_rival) {
-            return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
-        }
+    if (!is_ring || is_narrow)
+        && let Some(rival) = outer.beside(image).iter().find(is_rival)
+    {
+        return Err((RimDoubt::Rival, vec![rim.circle, rival.circle]));
     }
     if !best.is_certain() {
         return Err((RimDoubt::Short(best.seen), circles()));
