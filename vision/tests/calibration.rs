@@ -51,7 +51,7 @@ fn the_default_camera_has_the_superscouts_calibration() {
 
 const MIRROR_ERRORS: &str = r#"
 "below" | "beneath" | line 12, column 13: camera.seen_from: expected "below" or "above", found another text
-"spherical-mirror" | "mirror" | line 3, column 8: camera.kind: expected "spherical-mirror" or "ocamcalib" or "mei", found another text
+"spherical-mirror" | "mirror" | line 3, column 8: camera.kind: expected "spherical-mirror" or "ocamcalib" or "mei" or "kannala-brandt", found another text
 kind = "spherical-mirror" |  | line 2, column 2: camera: the key `kind` is missing
 focal = 1272.8  | focus = 1272.8 | line 6, column 1: camera.focus: unknown key; expected one of: kind, image, ahead, seen_from, mask, centre, focal, mirror_radius, mirror_distance, camera_height, rim
 focal = 1272.8  |  | line 2, column 2: camera: the key `focal` is missing
@@ -276,11 +276,13 @@ fn sections_that_other_programs_add_to_ocamcalibs_file_are_ignored() {
 #[test]
 fn the_file_of_another_program_is_named_with_what_to_do() {
     let kalibr = "cam0:\n  camera_model: omni\n";
+    let fisheye = "cam0:\n  camera_model: pinhole\n  distortion_model: equidistant\n";
     for (file, kind) in [
         (text("calib_results.txt"), "ocamcalib"),
         (text("omnidir.yml"), "mei"),
         (text("camodocal.yaml"), "mei"),
         (kalibr.to_owned(), "mei"),
+        (fisheye.to_owned(), "kannala-brandt"),
         ("<?xml version=\"1.0\"?>\n<opencv_storage>\n</opencv_storage>\n".to_owned(), "mei"),
     ] {
         let found = refusal(file.as_bytes(), b"");

@@ -288,6 +288,29 @@ fn mei() -> impl Strategy<Value = (String, String)> {
     )
 }
 
+/// Calibrations of fisheyes, tilted from straight down, in Kalibr's form or in OpenCV's.
+fn fisheye() -> impl Strategy<Value = (String, String)> {
+    let optics = (200.0..900.0, 0.97..1.03, 0..=60_i32);
+    let distortion = (-0.03..0.1, -0.01..0.02, -0.002..0.003, -0.0003..0.0004);
+    (optics, distortion, centre(), height_and_pose(), any::<bool>()).prop_map(
+        |((focal, ratio, tilt), (k1, k2, k3, k4), [u, v], pose, opencv)| {
+            let down = focal * ratio;
+            let yaml = if opencv {
+                format!("K: [[{focal}, 0.1, {u}], [0, {down}, {v}], [0, 0, 1]]\nD: [{k1}, {k2}, {k3}, {k4}]\n")
+            } else {
+                format!(
+                    "cam0:\n  camera_model: pinhole\n  distortion_model: equidistant\n  intrinsics: [{focal}, \
+                     {down}, {u}, {v}]\n  distortion_coeffs: [{k1}, {k2}, {k3}, {k4}]\n"
+                )
+            };
+            let text = format!(
+                "[camera]\nkind = \"kannala-brandt\"\nfile = \"f\"\nimage = [1280, 960]\ntilt = {tilt}\n{pose}"
+            );
+            (text, yaml)
+        },
+    )
+}
+
 fn centre() -> impl Strategy<Value = [f64; 2]> {
     [500.0..780.0, 380.0..580.0]
 }
@@ -356,7 +379,7 @@ proptest! {
 
     #[test]
     fn a_single_viewpoint_maps_pixels_to_floor_and_back(
-        (text, named) in prop_oneof![ocamcalib(), mei()], pixel in pixel(), ground in ground(),
+        (text, named) in prop_oneof![ocamcalib(), mei(), fisheye()], pixel in pixel(), ground in ground(),
     ) {
         round_trips(&camera_of(&text, &named).unwrap(), pixel, ground)?;
     }
@@ -371,4 +394,49 @@ proptest! {
         again.ahead = camera.ahead;
         prop_assert_eq!(again, camera);
     }
+}
+
+#[test]
+fn a_mask_hides_a_drawn_polygon_inside_of_the_rim() {
+    let mut mask = Mask::circle("m", [20, 10], [9.0, 5.0].into(), 4.5);
+    assert!(mask.sees([13, 5]) && !mask.sees([14, 5]) && !mask.sees([9, 0]));
+    // An arrow's head: its notch is seen.
+    mask.hide(&[[5.5, 2.5], [12.5, 2.5], [9.0, 4.8], [12.5, 7.5], [5.5, 7.5]]);
+    assert!(!mask.sees([6, 5]) && !mask.sees([11, 3]) && mask.sees([11, 5]) && mask.sees([9, 8]));
+}
+
+/// The numbers of a fisheye in OpenCV's form, and its calibration.
+fn lens(numbers: &str, more: &str) -> Camera {
+    let text = format!(
+        "[camera]\nkind = \"kannala-brandt\"\nfile = \"f\"\nimage = [1280, 960]\nviewpoint_height = 0.5\n\
+         ahead = 90\nseen_from = \"above\"\n{more}"
+    );
+    let yaml = format!("K: [300, 0, 640, 0, 300, 480, 0, 0, 1]\nD: [{numbers}]\n");
+    camera_of(&text, &yaml).unwrap()
+}
+
+#[test]
+fn a_fisheye_sees_an_angle_where_the_published_polynomial_is() {
+    let camera = lens("0.1, -0.02, 0.003, -0.0004", "");
+    // 300 (theta + 0.1 theta^3 - 0.02 theta^5 + 0.003 theta^7 - 0.0004 theta^9) at 45 degrees.
+    let radius = 248.512_821_262;
+    let [u, v] = camera.ground_to_pixel([0.5, 0.0]).unwrap().into();
+    assert!((u - 640.0).abs() < 1e-9 && (v - (480.0 - radius)).abs() < 1e-6, "{u} {v}");
+    let [x, y] = camera.pixel_to_ground([640.0 + radius, 480.0]).unwrap().into();
+    assert!(x.abs() < 1e-9 && (y + 0.5).abs() < 1e-9, "{x} {y}");
+}
+
+#[test]
+fn a_forward_camera_sees_the_floor_below_the_middle_of_its_image() {
+    let camera = lens("0, 0, 0, 0", "tilt = 90\n");
+    assert_eq!(camera.pixel_to_ground([640.0, 479.0]), None);
+    let eighth = std::f64::consts::FRAC_PI_4;
+    let [x, y] = camera.pixel_to_ground([640.0, 480.0 + 300.0 * eighth]).unwrap().into();
+    assert!((x - 0.5).abs() < 1e-9 && y.abs() < 1e-9, "{x} {y}");
+    assert!(camera.pixel_to_ground([600.0, 600.0]).unwrap().y > 0.0);
+    // Straight down is a quarter turn below the axis.
+    assert!((camera.middle().y - (480.0 + 600.0 * eighth)).abs() < 1e-9);
+    let again = calibration::to_toml(&camera);
+    let yaml = "K: [300, 0, 640, 0, 300, 480, 0, 0, 1]\nD: [0, 0, 0, 0]\n";
+    assert_eq!(camera_of(&again, yaml).unwrap(), camera);
 }

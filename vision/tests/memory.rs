@@ -8,7 +8,7 @@ use std::{hint::black_box, io::Cursor};
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use peak_alloc::PeakAlloc;
 use toposlam_vision::{
-    camera::{Mask, Mei, OCam, calibration},
+    camera::{KannalaBrandt, Mask, Mei, OCam, calibration},
     colour::ColourModel,
     image_file::{ImageFile, ImageFileError},
 };
@@ -44,10 +44,15 @@ fn read_calibration(bytes: &[u8]) -> Option<String> {
 const COLOURS: Stated = stated("colours", |bytes| message(ColourModel::read(bytes)), [512, 4096]);
 const IMAGE: Stated =
     stated("image", |bytes| message(ImageFile::open(bytes).map(|it| it.size())), [16, 1 << 20]);
-const READERS: [Stated; 5] = [
+const READERS: [Stated; 6] = [
     stated("calibration", read_calibration, [512, 4096]),
     stated("OCamCalib", |bytes| message(OCam::read("f", bytes, 1.0)), [32, 4096]),
     stated("MEI", |bytes| message(Mei::read("f", bytes, 1.0)), [512, 65_536]),
+    stated(
+        "fisheye",
+        |bytes| message(KannalaBrandt::read("f", bytes, 1.0, [0.0; 2])),
+        [512, 65_536],
+    ),
     COLOURS,
     IMAGE,
 ];
@@ -82,10 +87,10 @@ fn reading_takes_no_more_memory_than_documented() {
 
     let parts = "\n~,~[~{~=~\"~a.~#\n~[[a]]\n~[[a.b]]\n~'~\x7f~1 ~1\n~-1 ~- ~- 1\n~? ~a: ~\
         a:\n ~a: 1\n~[1],~&a ~*a ~!!a ~%A\n~---\n~|\n~\t~\u{fffd}~1,~{},~[],~\\~>~a";
-    let starts = "~a=[~[camera]\na=[~[camera]\nmask=\"~K:\n   data: [~D:\n   data: [ ~xi: [~5 ~\
+    let starts = "~<a>~a=[~[camera]\na=[~[camera]\nmask=\"~K:\n   data: [~D:\n   data: [ ~xi: [~5 ~\
         #\n~%YAML:1.0\n---\n~model_type: ~model_type: \"~a: [~a: {~version=1\na=[~\
         version=1\n[histograms]\nfloor=[~\x7f";
-    let mut most = [0; 5];
+    let mut most = [0; 6];
     // Growing vectors are largest just after a power of two.
     for length in (1..70).step_by(7).chain([127, 260, 1030, 4100, 16_400, 33_000]) {
         for part in parts.split('~') {

@@ -205,6 +205,21 @@ fn of_circles_around_one_centre_both_are_named_and_neither_is_found() {
 }
 
 #[test]
+fn a_disc_inside_of_a_mirror_in_a_bright_holder_is_not_taken_for_the_mirror() {
+    let mut image = draw(&Drawn { around: 250.0, ..PLAIN }, 8);
+    for (u, v, pixel) in image.enumerate_pixels_mut() {
+        // Three quarters of the robot's body.
+        let is_body = (f64::from(u) - 340.0).hypot(f64::from(v) - 240.0) < 110.0;
+        if is_body && (u < 340 || v < 240) {
+            *pixel = Luma([245]);
+        }
+    }
+    let error = rim::find(&[image]).unwrap_err();
+    let RimError::Uncertain { circles, .. } = &error else { panic!("{error:?}") };
+    assert!((circles[0][2] - PLAIN.radius).abs() < 0.5, "{error:?}");
+}
+
+#[test]
 fn a_clear_leader_is_the_rim_if_two_fifths_of_it_are_seen() {
     for seed in 0..3 {
         found(&Drawn { open: 0.6, noise: 1.0, ..PLAIN }, 1, seed);

@@ -62,9 +62,13 @@ pub(super) struct CalibrateArguments {
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
     /// Also write a mask without the pixels that never change (body, struts, lens): .png; needs at least
-    /// four images from different places
+    /// four images from different places, or --hide
     #[arg(long, value_name = "FILE", requires = "out")]
     mask_out: Option<PathBuf>,
+    /// A polygon that the mask hides, as the robot's body: its corners in pixels, as in "300,400 420,400
+    /// 360,480"; may be repeated
+    #[arg(long, value_name = "POLYGON", value_parser = parse_polygon, requires = "mask_out")]
+    hide: Vec<Polygon>,
     /// Print one JSON object, and the calibration only to --out
     #[arg(long)]
     json: bool,
@@ -108,8 +112,19 @@ impl CalibrateArguments {
         let rim = rim.map_err(|error| self.no_rim(error))?;
         let mask = match &self.mask_out {
             Some(path) => {
-                let found = unchanging::mask(&self.mask_name(path), &images, &rim);
-                Some(found.map_err(|error| CliError::at("--mask-out", error))?)
+                let name = self.mask_name(path);
+                // What never changes is not seen in few images, but may be drawn.
+                let is_drawn = !self.hide.is_empty() && images.len() < unchanging::FEWEST;
+                let mut mask = if is_drawn {
+                    Mask::circle(&name, size, rim.centre, rim.radius)
+                } else {
+                    unchanging::mask(&name, &images, &rim)
+                        .map_err(|error| CliError::at("--mask-out", error))?
+                };
+                for Polygon(corners) in &self.hide {
+                    mask.hide(corners);
+                }
+                Some(mask)
             }
             None => None,
         };
@@ -269,6 +284,22 @@ fn check_rim([u, v, radius]: [f64; 3], image: [u32; 2]) -> Result<(), String> {
 fn parse_rim(text: &str) -> Result<[f64; 3], String> {
     let rim = three_numbers(text);
     rim.ok_or_else(|| "write three numbers of pixels: U,V,R, as in 611,480,652".to_owned())
+}
+
+/// The corners of a polygon, in pixels.
+#[derive(Clone)]
+struct Polygon(Vec<[f64; 2]>);
+
+fn parse_polygon(text: &str) -> Result<Polygon, String> {
+    let corner = |word: &str| {
+        let (u, v) = word.split_once(',')?;
+        let [u, v] = [u, v].map(|part| part.parse().ok().filter(|at: &f64| at.is_finite()));
+        Some([u?, v?])
+    };
+    let corners: Option<Vec<_>> = text.split_whitespace().map(corner).collect();
+    let corners = corners.filter(|corners| corners.len() >= 3).map(Polygon);
+    corners
+        .ok_or_else(|| "write at least three corners, as in \"300,400 420,400 360,480\"".to_owned())
 }
 
 /// The calibrated mirror with this rim.

@@ -5,6 +5,7 @@ use std::io::Cursor;
 use image::{
     DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, codecs::png::PngDecoder,
 };
+use nalgebra::{Point2, distance};
 use thiserror::Error;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,6 +52,27 @@ impl Mask {
     pub fn new(file: &str, size: [u32; 2], seen: Vec<bool>) -> Self {
         assert_eq!(seen.len(), size[0] as usize * size[1] as usize);
         Self { file: file.to_owned(), size, seen }
+    }
+
+    /// The mask of the pixels inside of a circle.
+    pub fn circle(file: &str, size: [u32; 2], centre: Point2<f64>, radius: f64) -> Self {
+        let pixels = (0..size[1]).flat_map(|v| (0..size[0]).map(move |u| Point2::new(u, v)));
+        let inside = pixels.map(|pixel| distance(&pixel.map(f64::from), &centre) < radius);
+        Self::new(file, size, inside.collect())
+    }
+
+    /// Hides the pixels whose centres are inside of a polygon, which may have holes where it crosses itself.
+    pub fn hide(&mut self, corners: &[[f64; 2]]) {
+        let width = self.size[0] as usize;
+        for (at, seen) in self.seen.iter_mut().enumerate() {
+            let [u, v] = [at % width, at / width].map(|along| along as f64);
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+            let crossed = sides.filter(|([from_u, from_v], [to_u, to_v])| {
+                let crosses_row = (*from_v > v) != (*to_v > v);
+                crosses_row && u < from_u + (v - from_v) / (to_v - from_v) * (to_u - from_u)
+            });
+            *seen &= crossed.count() % 2 == 0;
+        }
     }
 
     /// The mask as an image: white where the floor can be seen, black elsewhere.

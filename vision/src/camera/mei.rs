@@ -46,9 +46,10 @@ const CAMODOCAL: [&str; 9] = [
     "projection_parameters.gamma2",
     "projection_parameters.v0",
 ];
-/// Those of OpenCV's omnidir, by any of their names, and as a matrix or a plain list.
-const OMNIDIR: [[&str; 4]; 3] = [
-    ["xi", "xi.data", "Xi", "Xi.data"],
+/// That of OpenCV's omnidir, by any of its names.
+const XI: [&str; 4] = ["xi", "xi.data", "Xi", "Xi.data"];
+/// Those of OpenCV's matrix and distortion, by any of their names, as a matrix or a plain list.
+pub(super) const MATRIX: [[&str; 4]; 2] = [
     ["camera_matrix.data", "K.data", "camera_matrix", "K"],
     ["distortion_coefficients.data", "D.data", "distortion_coefficients", "D"],
 ];
@@ -73,18 +74,9 @@ impl Mei {
     /// Returns an error if the file is not as it should be. No bytes make it panic.
     pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
         let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
-        let known = [&SHARED[..], &CAMODOCAL, OMNIDIR.as_flattened(), &KALIBR].concat();
-        let is_xml = text.trim_start().starts_with('<');
-        let found = if is_xml { xml::values(text, &known)? } else { yaml::values(text, &known)? };
-        let side = |key| side_of_image(key, found.number(key)?);
-        let image = match ["image_width", "image_height"].map(|key| found.has(key)) {
-            [false, false] if found.has("cam0.resolution") => {
-                let [width, height] = found.numbers("cam0.resolution")?;
-                Some([side_of_image("the width", width)?, side_of_image("the height", height)?])
-            }
-            [false, false] => None,
-            _ => Some([side("image_width")?, side("image_height")?]),
-        };
+        let known = known_keys(&[&CAMODOCAL[..], &XI].concat());
+        let found = values(text, &known)?;
+        let image = image(&found)?;
         let (xi, [k1, k2, p1, p2], [focal_u, skew, centre_u, focal_v, centre_v]) =
             if found.has("model_type") || found.has("mirror_parameters.xi") {
                 camodocal(&found)?
@@ -265,7 +257,35 @@ fn kalibr(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
     Ok((xi, distortion, [gamma1, 0.0, u0, gamma2, v0]))
 }
 
-fn expect_model(
+/// The keys that all models have, and these.
+pub(super) fn known_keys(own: &[&'static str]) -> Vec<&'static str> {
+    [&SHARED[..], &KALIBR, MATRIX.as_flattened(), own].concat()
+}
+
+/// The values of known keys in YAML or XML.
+pub(super) fn values<'k>(
+    text: &str,
+    known: &'k [&'static str],
+) -> Result<yaml::Values<'k>, OpticsFileError> {
+    let is_xml = text.trim_start().starts_with('<');
+    if is_xml { xml::values(text, known) } else { yaml::values(text, known) }
+}
+
+/// Width and height of the images, if the file gives them.
+pub(super) fn image(found: &yaml::Values<'_>) -> Result<Option<[u32; 2]>, OpticsFileError> {
+    const KEYS: [&str; 2] = ["image_width", "image_height"];
+    let sides = if KEYS.iter().any(|key| found.has(key)) {
+        [found.number(KEYS[0])?, found.number(KEYS[1])?]
+    } else if found.has("cam0.resolution") {
+        found.numbers("cam0.resolution")?
+    } else {
+        return Ok(None);
+    };
+    let [width, height] = [0, 1].map(|axis| side_of_image(KEYS[axis], sides[axis]));
+    Ok(Some([width?, height?]))
+}
+
+pub(super) fn expect_model(
     found: &yaml::Values<'_>,
     key: &'static str,
     expected: &'static str,
@@ -277,9 +297,9 @@ fn expect_model(
 }
 
 fn omnidir(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
-    let [xi, matrix, distortion] = OMNIDIR.map(|keys| found.first_of(&keys));
+    let [matrix, distortion] = MATRIX.map(|keys| found.first_of(&keys));
     let matrix: [f64; 9] = found.numbers(matrix)?;
-    let [xi] = found.numbers(xi)?;
+    let [xi] = found.numbers(found.first_of(&XI))?;
     let distortion = found.numbers(distortion)?;
     Ok((xi, distortion, [matrix[0], matrix[1], matrix[2], matrix[4], matrix[5]]))
 }

@@ -1,11 +1,12 @@
 //! Cameras: the point of the floor that a pixel shows. Section 3.
 //!
 //! Pixels are (u, v), u to the right and v down; pixel centres are integers. Floor coordinates have the robot's centre
-//! as origin, x ahead and y to the left, in metres; z is up. The axis of every kind of camera is vertical above the
-//! robot's centre, and the middle of the image shows what is straight below.
+//! as origin, x ahead and y to the left, in metres; z is up. Every camera is above the robot's centre, and its axis is
+//! vertical, so that the middle of the image shows what is straight below; that of a fisheye may be tilted.
 
 pub mod calibration;
 mod fit_picture;
+mod kannala_brandt;
 mod mask;
 mod mei;
 mod morphology;
@@ -21,6 +22,7 @@ mod yaml;
 use nalgebra::{Matrix2, Point2, Point3, Vector3};
 
 pub use fit_picture::fit_picture;
+pub use kannala_brandt::KannalaBrandt;
 pub use mask::{Mask, MaskError};
 pub use mei::Mei;
 pub use ocam::OCam;
@@ -40,6 +42,7 @@ pub enum OpticsModel {
     SphericalMirror(SphericalMirror),
     OCamCalib(OCam),
     Mei(Mei),
+    KannalaBrandt(KannalaBrandt),
 }
 
 /// A place in an image that is scaled by a factor: pixel centres are integers, so an image begins at
@@ -83,6 +86,7 @@ impl OpticsModel {
             Self::SphericalMirror(mirror) => mirror.ray(pixel),
             Self::OCamCalib(ocam) => ocam.ray(pixel),
             Self::Mei(mei) => mei.ray(pixel),
+            Self::KannalaBrandt(fisheye) => fisheye.ray(pixel),
         }
     }
 
@@ -92,6 +96,7 @@ impl OpticsModel {
             Self::SphericalMirror(mirror) => mirror.pixel(ground),
             Self::OCamCalib(ocam) => ocam.pixel(ground),
             Self::Mei(mei) => mei.pixel(ground),
+            Self::KannalaBrandt(fisheye) => fisheye.pixel(ground),
         }
     }
 }
@@ -129,6 +134,9 @@ impl Camera {
             }
             OpticsModel::OCamCalib(ocam) => OpticsModel::OCamCalib(ocam.scaled(factor, image)),
             OpticsModel::Mei(mei) => OpticsModel::Mei(mei.scaled(factor, image)),
+            OpticsModel::KannalaBrandt(fisheye) => {
+                OpticsModel::KannalaBrandt(fisheye.scaled(factor, image))
+            }
         };
         let mask = self.mask.as_ref().map(|mask| mask.sized(image));
         Self { image, optics, mask, ..*self }
@@ -140,6 +148,7 @@ impl Camera {
             OpticsModel::SphericalMirror(mirror) => mirror.centre,
             OpticsModel::OCamCalib(ocam) => ocam.centre,
             OpticsModel::Mei(mei) => mei.centre,
+            OpticsModel::KannalaBrandt(fisheye) => fisheye.middle(),
         }
     }
 
@@ -149,6 +158,7 @@ impl Camera {
             OpticsModel::SphericalMirror(mirror) => mirror.camera_height,
             OpticsModel::OCamCalib(ocam) => ocam.viewpoint_height,
             OpticsModel::Mei(mei) => mei.viewpoint_height,
+            OpticsModel::KannalaBrandt(fisheye) => fisheye.viewpoint_height,
         }
     }
 
@@ -158,7 +168,7 @@ impl Camera {
     pub fn eye_height(&self) -> f64 {
         match &self.optics {
             OpticsModel::SphericalMirror(mirror) => mirror.camera_height + mirror.mirror_distance,
-            OpticsModel::OCamCalib(_) | OpticsModel::Mei(_) => self.height(),
+            _ => self.height(),
         }
     }
 

@@ -17,7 +17,7 @@ use super::{
 use crate::{geometry::angle, least_squares::median};
 
 /// The least number of images. Geometry: in fewer, edges of the building are in the same place by chance.
-const FEWEST: usize = 4;
+pub const FEWEST: usize = 4;
 /// The longest side of an image; larger ones are reduced. Geometry: memory and time.
 const LONGEST: u32 = 640;
 /// The least part of the pixels of a piece that change in some image. Views.

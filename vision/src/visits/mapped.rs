@@ -404,12 +404,14 @@ impl<S: Copy + Default> MappedRule<S> {
         let is_corner = |one: f64, other: f64| {
             corner.corners && !went_on && PI - wrapped(one - other).abs() >= corner.min_turn
         };
-        let mut doors = Vec::new();
+        // What may be doors, and those that are.
+        let (mut may, mut doors) = (0, Vec::new());
         let arm = |&TrackedArm { direction, part }: &TrackedArm| {
             let is_traversed = ways.into_iter().flatten().any(|way| self.is_same(way, direction));
             let counts = part >= visit.agree || is_traversed && part >= visit.traversed;
             let is_doubtful = !is_traversed && (part - visit.agree).abs() < visit.doubt;
             doors.extend(counts.then_some(direction));
+            may += usize::from(counts || is_doubtful);
             let certainty = match (is_doubtful, counts) {
                 (true, _) => Certainty::Possible,
                 (false, true) => Certainty::Certain,
@@ -419,8 +421,8 @@ impl<S: Copy + Default> MappedRule<S> {
         };
         let mut arms: Vec<PlaceArm> = arms.iter().map(arm).collect();
         let is_vertex = match (stay.kind, &doors[..]) {
-            (StayKind::DeadEnd, [_])
-            | (StayKind::Junction | StayKind::PossibleJunction, [_, _, _, ..]) => true,
+            (StayKind::DeadEnd, [_]) => true,
+            (StayKind::Junction | StayKind::PossibleJunction, _) if may >= 3 => true,
             // A corridor goes straight on where no arm of a junction is left.
             (StayKind::Junction, &[one, other]) => is_corner(one, other),
             _ => false,

@@ -20,12 +20,14 @@
 //!
 //! ```toml
 //! [camera]
-//! kind = "ocamcalib"           # or "mei", for OpenCV's omnidir, camodocal and Kalibr's omni
+//! kind = "ocamcalib"           # "mei": OpenCV's omnidir, camodocal, Kalibr's omni; "kannala-brandt": OpenCV's
+//!                              # fisheye, camodocal, Kalibr's pinhole with equidistant
 //! file = "calib_results.txt"   # beside this file
 //! viewpoint_height = 1.02      # metres above the floor
 //! ahead = 90.0
 //! seen_from = "below"
 //! image = [1280, 960]          # only needed if the file does not give it
+//! tilt = 60.0                  # optional, only "kannala-brandt": degrees of the axis from straight down to ahead
 //! ```
 
 mod read;

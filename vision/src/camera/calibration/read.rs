@@ -9,7 +9,7 @@ use toposlam_model::format::document::{
 
 use super::{CalibrationError, CalibrationErrorKind, SIDES};
 use crate::camera::{
-    Camera, Mask, Mei, OCam, OpticsFileError, OpticsModel, SeenFrom, SphericalMirror,
+    Camera, KannalaBrandt, Mask, Mei, OCam, OpticsFileError, OpticsModel, SeenFrom, SphericalMirror,
 };
 
 /// Reads the files that a calibration names, by their names in it.
@@ -22,12 +22,14 @@ const MIRROR_RADIUS: RangeInclusive<f64> = 1e-3..=1.0;
 const HEIGHT: RangeInclusive<f64> = 0.01..=10.0;
 const RIM: RangeInclusive<f64> = 1.0..=1e6;
 const ANGLE: RangeInclusive<f64> = -360.0..=360.0;
+const TILT: RangeInclusive<f64> = 0.0..=135.0;
 
 #[derive(Clone, Copy)]
 enum Kind {
     SphericalMirror,
     OCamCalib,
     Mei,
+    KannalaBrandt,
 }
 
 /// Reads a calibration file, and through `files` those that it names.
@@ -46,23 +48,37 @@ pub fn read(bytes: &[u8], files: &mut Files<'_>) -> Result<Camera, CalibrationEr
         ("spherical-mirror", Kind::SphericalMirror),
         ("ocamcalib", Kind::OCamCalib),
         ("mei", Kind::Mei),
+        ("kannala-brandt", Kind::KannalaBrandt),
     ])?;
     let (image, optics) = match kind {
         Kind::SphericalMirror => spherical_mirror(value)?,
-        Kind::OCamCalib => single_viewpoint(value, files, |file, bytes, height| {
+        Kind::OCamCalib => single_viewpoint(value, files, &[], |file, bytes, height| {
             let ocam = OCam::read(file, bytes, height)?;
             Ok((Some(ocam.image), OpticsModel::OCamCalib(ocam)))
         })?,
-        Kind::Mei => single_viewpoint(value, files, |file, bytes, height| {
+        Kind::Mei => single_viewpoint(value, files, &[], |file, bytes, height| {
             let mei = Mei::read(file, bytes, height)?;
             Ok((mei.image, OpticsModel::Mei(mei)))
         })?,
+        Kind::KannalaBrandt => {
+            let tilt = |value: DocumentValue<'_>| value.number_in("an angle in degrees", TILT);
+            let tilt = table.get("tilt").map(tilt).transpose()?.unwrap_or(0.0).to_radians();
+            let axis = [tilt, ahead(&table)?];
+            single_viewpoint(value, files, &["tilt"], |file, bytes, height| {
+                let fisheye = KannalaBrandt::read(file, bytes, height, axis)?;
+                Ok((fisheye.image, OpticsModel::KannalaBrandt(fisheye)))
+            })?
+        }
     };
-    let ahead = table.need("ahead")?.number_in("an angle in degrees", ANGLE)?.to_radians();
+    let ahead = ahead(&table)?;
     let seen_from =
         table.need("seen_from")?.word(&[("below", SeenFrom::Below), ("above", SeenFrom::Above)])?;
     let mask = table.get("mask").map(|mask| read_mask(mask, files, image)).transpose()?;
     Ok(Camera { image, ahead, seen_from, optics, mask })
+}
+
+fn ahead(table: &DocumentTable<'_>) -> Result<f64, CalibrationError> {
+    Ok(table.need("ahead")?.number_in("an angle in degrees", ANGLE)?.to_radians())
 }
 
 /// The error for bytes that are no TOML; the files of other programs are none.
@@ -72,7 +88,8 @@ fn of_other_program(bytes: &[u8], error: DocumentError) -> CalibrationError {
     let kind = if OCam::read("", bytes, 1.0).is_ok() {
         "ocamcalib"
     } else if MARKS.iter().any(|mark| text.contains(mark)) {
-        "mei"
+        let is_fisheye = ["KANNALA_BRANDT", "equidistant"].iter().any(|mark| text.contains(mark));
+        if is_fisheye { "kannala-brandt" } else { "mei" }
     } else {
         return error.into();
     };
@@ -127,9 +144,10 @@ fn spherical_mirror(value: DocumentValue<'_>) -> Result<([u32; 2], OpticsModel),
 fn single_viewpoint(
     value: DocumentValue<'_>,
     files: &mut Files<'_>,
+    own_keys: &[&'static str],
     read: impl FnOnce(&str, &[u8], f64) -> Result<(Option<[u32; 2]>, OpticsModel), OpticsFileError>,
 ) -> Result<([u32; 2], OpticsModel), CalibrationError> {
-    let table = value.table(&[&COMMON[..], &["file", "viewpoint_height"]].concat())?;
+    let table = value.table(&[&COMMON[..], &["file", "viewpoint_height"], own_keys].concat())?;
     let height = camera_height(&table, "viewpoint_height")?;
     let given = table.get("image").map(read_image).transpose()?;
     let file = table.need("file")?;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use toml::Value;
 
-use crate::camera::{Camera, Mei, OCam, OpticsModel, SeenFrom};
+use crate::camera::{Camera, KannalaBrandt, Mei, OCam, OpticsModel, SeenFrom};
 
 pub fn to_toml(camera: &Camera) -> String {
     let mut text = String::from("[camera]\n");
@@ -21,6 +21,7 @@ pub fn to_toml(camera: &Camera) -> String {
         OpticsModel::SphericalMirror(_) => "spherical-mirror",
         OpticsModel::OCamCalib(_) => "ocamcalib",
         OpticsModel::Mei(_) => "mei",
+        OpticsModel::KannalaBrandt(_) => "kannala-brandt",
     };
     line("kind", quoted(kind), "");
     let [width, height] = camera.image;
@@ -40,10 +41,17 @@ pub fn to_toml(camera: &Camera) -> String {
             line("rim", rim, "pixels; follows from the others");
         }
         OpticsModel::OCamCalib(OCam { file, viewpoint_height, .. })
-        | OpticsModel::Mei(Mei { file, viewpoint_height, .. }) => {
+        | OpticsModel::Mei(Mei { file, viewpoint_height, .. })
+        | OpticsModel::KannalaBrandt(KannalaBrandt { file, viewpoint_height, .. }) => {
             line("file", quoted(file), "");
             line("viewpoint_height", number(*viewpoint_height), "metres above the floor");
         }
+    }
+    if let OpticsModel::KannalaBrandt(KannalaBrandt { tilt, .. }) = &camera.optics
+        && *tilt > 0.0
+    {
+        let tilt = number(degrees(*tilt));
+        line("tilt", tilt, "degrees from straight down towards ahead");
     }
     let ahead = number(degrees(camera.ahead));
     line("ahead", ahead, "degrees in the image, counter-clockwise from u, where \"ahead\" is");

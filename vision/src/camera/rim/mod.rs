@@ -104,6 +104,11 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
     while !fits.is_empty() {
         let leader = fits.remove(0);
         match rim(&mean, &leader, &fits, first_doubt.is_some()) {
+            // In a dark circle that may be the mirror, a disc may be the robot's body.
+            Ok(rim) if named.iter().any(|dark: &Circle| dark.off(rim.circle.centre) < 0.0) => {
+                named.push(rim.circle);
+                break;
+            }
             Ok(rim) => return Ok(rim.rim()),
             Err((doubt, circles)) => {
                 first_doubt.get_or_insert(doubt);
@@ -116,7 +121,9 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
             }
         }
     }
-    named.extend(fits.iter().map(|fit| fit.circle));
+    if first_doubt != Some(RimDoubt::Nested) {
+        named.extend(fits.iter().map(|fit| fit.circle));
+    }
     let mut circles: Vec<Circle> = Vec::new();
     for circle in named {
         if !circles.iter().any(|other| other.is_near(&circle, 0.5 * SAME)) {
