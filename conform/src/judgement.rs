@@ -11,13 +11,17 @@ use toposlam_model::{
     folding::{FoldedTrail, MarkedTrails, SearchLimit, SmallestWorld, smallest_world},
     mapping::MappingAlgorithm,
     marker::{Directional, Marker, Undirected},
-    trace::{AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceOrderError, poses},
+    percept::{Percept, Sighting},
+    trace::{
+        AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceEventKind, TraceOrderError,
+        poses,
+    },
 };
 
 use super::{
     config::ConformConfig,
     divergence::{Divergence, DivergenceCause, FaultClass},
-    events::{OutOfOrder, RunEvents, SightingError},
+    events::{CheckedEvent, CheckedKind, OutOfOrder, RunEvents, SightingError},
     impossible::{FoldedTrace, Impossibility, first_percept, folded_before},
     measured_hallways::MeasuredHallways,
     possible_visits::PossibleVisits,
@@ -141,6 +145,9 @@ pub fn judge(
     {
         return Err(JudgeError::Algorithm { algorithm, marker });
     }
+    if let Some(undecided) = Judgement::of_undecided(&events) {
+        return Ok(undecided);
+    }
     let mut tolerance = Tolerance::new(events, quirks, config);
     loop {
         let judgement = Judgement::new(&tolerance.amended, config, &tolerance.noted, watch)?;
@@ -209,6 +216,36 @@ impl Judgement {
         }
         judgement.divergence = found.first;
         Ok(judgement)
+    }
+
+    /// The judgement of a run of which no visit is decided, if it is one: nothing is compared.
+    fn of_undecided(events: &RunEvents) -> Option<Self> {
+        let is_undecided = |event: &CheckedEvent| matches!(event.kind, CheckedKind::Undecided(_));
+        let unrecognised = Some(events.events.iter().position(is_undecided)?);
+        if events.trace() != Err(TraceOrderError::Empty) {
+            return None;
+        }
+        // A trace is never empty. Nothing is compared with this one.
+        let any = Percept { degree: 1, sighting: Sighting::Nothing };
+        let trace = Trace::new([TraceEventKind::Percept(any)]).ok()?;
+        Some(Self {
+            events: events.clone(),
+            trace,
+            divergence: None,
+            contradiction: None,
+            possible: None,
+            lost: None,
+            unrecognised,
+            trail: None,
+            poses: None,
+            smallest: None,
+            determined: None,
+            ways: 1,
+            measured: MeasuredHallways::default(),
+            algorithm: None,
+            coverage: RunCoverage::default(),
+            tolerated: Vec::new(),
+        })
     }
 
     fn compare_world(&mut self, config: &ConformConfig, found: &mut FirstDivergence) {
