@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 use toposlam_logs::{
+    ReadingRemark,
     entries::{Content, Entry},
     error::LogError,
     messages,
@@ -72,6 +73,10 @@ pub struct ExtractedRun {
     /// The number of laser scans that were sensed.
     pub scans: u64,
     pub skipped: SkippedMessages,
+    /// What was repaired in the messages.
+    pub remarks: Vec<ReadingRemark>,
+    /// The number of scans whose stamps are far from those of the odometry: the order of the log places them.
+    pub scans_of_other_clock: u64,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
@@ -201,6 +206,7 @@ pub fn extract(
         watch,
         laser: Visits::by_laser(laser),
         placing: ScanOdometry::default(),
+        last_scan: 0,
     };
     extraction.read_entries(log, &bound)?;
     let Extraction { mut run, recorded, scenes, laser, .. } = extraction;
@@ -245,8 +251,7 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
             Content::Event(EventKind::Odometry(odometry)) => placing.odometry(stamp, odometry),
             Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) => {
                 let source = EventSource::default();
-                let placed = placing.scan(stamp, PlacedScan { source, scan, odometry });
-                placed.into_iter().collect()
+                placing.scan(stamp, PlacedScan { source, scan, odometry })
             }
             _ => return,
         };
@@ -298,12 +303,15 @@ struct Extraction<'w, W> {
     laser: Visits<LaserSensor, EventSource>,
     /// Scans that wait for their odometry.
     placing: ScanOdometry,
+    /// The time of the last scan that was sensed.
+    last_scan: u64,
 }
 
 impl<W: Watch> Extraction<'_, W> {
     fn read_entries(&mut self, log: &Log, bound: &BoundTopicMap) -> Result<(), ExtractError> {
         let mut clock = MessageClock::default();
-        for entry in log.entries(bound) {
+        let mut entries = log.entries(bound);
+        for entry in entries.by_ref() {
             let entry = entry?;
             if self.run.evidence == Evidence::Laser && is_timed(&entry) {
                 clock
@@ -319,8 +327,10 @@ impl<W: Watch> Extraction<'_, W> {
         self.look()?;
         let scans_without_odometry = self.placing.without_odometry();
         self.run.skipped = SkippedMessages { off_clock, scans_without_odometry };
+        self.run.remarks = entries.remarks();
+        self.run.scans_of_other_clock = self.placing.other_clock();
         match std::mem::take(&mut self.placing).finish() {
-            Some(waiting) => waiting.for_each(|placed| self.add_scan(&placed)),
+            Some(waiting) => waiting.for_each(|placed| self.add_scan(placed)),
             None if self.run.scans > 0 => {
                 return Err(ExtractError::NoOdometry { scans: self.run.scans });
             }
@@ -363,7 +373,7 @@ impl<W: Watch> Extraction<'_, W> {
         match kind {
             EventKind::Odometry(odometry) => {
                 for placed in self.placing.odometry(stamp, odometry) {
-                    self.add_scan(&placed);
+                    self.add_scan(placed);
                 }
                 if matches!(self.run.evidence, Evidence::Scenes | Evidence::Images) {
                     self.scenes.add_odometry(id, stamp, odometry);
@@ -375,8 +385,7 @@ impl<W: Watch> Extraction<'_, W> {
             EventKind::Frame(Frame { scan: Some(scan), odometry, .. }) => {
                 self.run.scans += 1;
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
-                let placed = self.placing.scan(stamp, PlacedScan { source, scan, odometry });
-                if let Some(placed) = &placed {
+                for placed in self.placing.scan(stamp, PlacedScan { source, scan, odometry }) {
                     self.add_scan(placed);
                 }
             }
@@ -394,9 +403,11 @@ impl<W: Watch> Extraction<'_, W> {
     }
 
     /// Senses a laser scan.
-    fn add_scan(&mut self, placed: &PlacedScan) {
-        let PlacedScan { source, scan, odometry } = placed;
-        self.laser.add_frame(*source, scan, odometry);
+    fn add_scan(&mut self, PlacedScan { source, scan, odometry }: PlacedScan) {
+        // Scans are in the order of their stamps.
+        self.last_scan = self.last_scan.max(source.time);
+        let source = EventSource { time: self.last_scan, ..source };
+        self.laser.add_frame(source, &scan, &odometry);
         self.watch.part_done(1);
     }
 

@@ -1,4 +1,5 @@
-//! The odometry at the times of laser scans: interpolated between the readings before and after a scan.
+//! The odometry at the times of laser scans: interpolated between the readings before and after a scan. The times are
+//! stamps; the messages may be recorded a few seconds later.
 
 use std::{collections::VecDeque, sync::Arc};
 
@@ -15,54 +16,122 @@ pub(super) struct PlacedScan {
     pub odometry: Odometry,
 }
 
-/// Readings farther apart than this, in nanoseconds, are not of the same clock, or have a gap in between.
+/// Readings farther apart than this, in nanoseconds, have a gap in between.
 const GAP: u64 = 1_000_000_000;
-/// More scans do not wait.
+/// A message is recorded at most this late, in nanoseconds.
+const HISTORY: u64 = 5_000_000_000;
+/// A clock that goes back by more than this, in nanoseconds, was set.
+const LATE: u64 = 1_000_000_000;
+/// More scans do not wait for the first odometry.
 const WAITING: usize = 50;
+/// More scans do not wait.
+const MOST_WAITING: usize = 2000;
 
-/// Scans that wait for the next odometry.
+/// The odometry of the last seconds, and scans that wait for the next one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ScanOdometry {
-    /// The last odometry, with its time.
-    last: Option<(u64, Odometry)>,
-    waiting: VecDeque<(u64, PlacedScan)>,
+    /// In the order of their stamps.
+    history: VecDeque<(u64, Odometry)>,
+    /// Whether odometry came before that in the history.
+    has_earlier: bool,
+    /// The stamp of the last odometry in the log.
+    last: Option<u64>,
+    /// In the order of their stamps. Without one, a scan has another clock than the odometry.
+    waiting: VecDeque<(Option<u64>, PlacedScan)>,
     /// The number of scans that waited in vain.
     without_odometry: u64,
+    /// The number of scans whose stamps are far from those of the odometry.
+    other_clock: u64,
 }
 
 impl ScanOdometry {
-    /// Takes the next odometry. Returns the scans that have waited for it.
+    /// Takes the next odometry in the log, with its stamp. Returns the scans that have waited for it.
     pub(super) fn odometry(&mut self, time: u64, odometry: Odometry) -> Vec<PlacedScan> {
-        let before = self.last.replace((time, odometry)).unwrap_or((time, odometry));
-        let same_clock = (1..=GAP).contains(&time.saturating_sub(before.0));
-        let placed = |(at, scan): (u64, PlacedScan)| {
-            if same_clock && (before.0..=time).contains(&at) {
-                let odometry = interpolated(before, (time, odometry), at);
-                PlacedScan { odometry, ..scan }
-            } else {
-                scan
+        let mut placed = Vec::new();
+        if self.last.replace(time).is_some_and(|last| time.saturating_add(LATE) < last) {
+            // The clock was set.
+            placed.extend(self.waiting.drain(..).map(|(_, scan)| scan));
+            self.has_earlier = true;
+            self.history.clear();
+        }
+        let place = self.history.partition_point(|(other, _)| *other <= time);
+        self.history.insert(place, (time, odometry));
+        for (waiting, _) in &mut self.waiting {
+            // It would have waited for seconds.
+            if waiting.is_some_and(|waiting| waiting > time.saturating_add(HISTORY)) {
+                *waiting = None;
+                self.other_clock += 1;
             }
-        };
-        self.waiting.drain(..).map(placed).collect()
+        }
+        placed.extend(self.placed());
+        let newest = self.newest().unwrap_or(time);
+        while self.history.len() > 2
+            && self.history.front().is_some_and(|(time, _)| time.saturating_add(HISTORY) < newest)
+        {
+            self.has_earlier = true;
+            self.history.pop_front();
+        }
+        placed
     }
 
-    /// Takes the next scan, with the last odometry before it in the log. Returns the scans whose odometry
-    /// is known.
-    pub(super) fn scan(&mut self, time: u64, scan: PlacedScan) -> Option<PlacedScan> {
-        if let Some((last, odometry)) = self.last
-            && last == time
+    /// Takes the next scan in the log with its stamp, and with the last odometry before it. Returns the scans
+    /// whose odometry is known, in the order of their stamps.
+    pub(super) fn scan(&mut self, time: u64, scan: PlacedScan) -> Vec<PlacedScan> {
+        let newest = self.newest();
+        if newest.is_some_and(|newest| time.saturating_add(HISTORY) < newest) {
+            self.other_clock += 1;
+            self.waiting.push_back((None, scan));
+        } else {
+            let is_before =
+                |(other, _): &(Option<u64>, PlacedScan)| other.is_none_or(|other| other <= time);
+            let place = self.waiting.iter().rposition(is_before).map_or(0, |before| before + 1);
+            self.waiting.insert(place, (Some(time), scan));
+        }
+        let mut placed = self.placed();
+        let most = if newest.is_some() { MOST_WAITING } else { WAITING };
+        if self.waiting.len() > most
+            && let Some((_, oldest)) = self.waiting.pop_front()
         {
-            return Some(PlacedScan { odometry, ..scan });
+            // Without any odometry the oldest scans are of no use.
+            match newest {
+                None => self.without_odometry += 1,
+                Some(_) => placed.push(oldest),
+            }
         }
-        self.waiting.push_back((time, scan));
-        // Without any odometry the oldest scans are of no use.
-        let is_late = self.waiting.len() > WAITING;
-        let oldest = if is_late { self.waiting.pop_front() } else { None };
-        if self.last.is_none() {
-            self.without_odometry += u64::from(oldest.is_some());
-            return None;
+        placed
+    }
+
+    /// The waiting scans up to the newest odometry, with the odometry at their times.
+    fn placed(&mut self) -> Vec<PlacedScan> {
+        let Some(newest) = self.newest() else { return Vec::new() };
+        let is_known =
+            |(time, _): &(Option<u64>, PlacedScan)| time.is_none_or(|time| time <= newest);
+        let known = self.waiting.iter().take_while(|waiting| is_known(waiting)).count();
+        let known: Vec<_> = self.waiting.drain(..known).collect();
+        let place = |(time, scan): (Option<u64>, PlacedScan)| {
+            let odometry = time.and_then(|time| self.at(time)).unwrap_or(scan.odometry);
+            PlacedScan { odometry, ..scan }
+        };
+        known.into_iter().map(place).collect()
+    }
+
+    fn newest(&self) -> Option<u64> {
+        self.history.back().map(|(time, _)| *time)
+    }
+
+    /// The odometry at a time: interpolated, or else the last one before it. Of several at that time the last
+    /// counts. `None` if it is not in the history.
+    fn at(&self, time: u64) -> Option<Odometry> {
+        let after = self.history.partition_point(|(other, _)| *other <= time);
+        let Some(before) = after.checked_sub(1).and_then(|before| self.history.get(before)) else {
+            return self.history.front().map(|(_, first)| *first).filter(|_| !self.has_earlier);
+        };
+        match self.history.get(after) {
+            Some(next) if before.0 < time && next.0 - before.0 <= GAP => {
+                Some(interpolated(*before, *next, time))
+            }
+            _ => Some(before.1),
         }
-        oldest.map(|(_, scan)| scan)
     }
 
     /// The number of scans that are of no use: they came too long before the first odometry.
@@ -70,9 +139,19 @@ impl ScanOdometry {
         self.without_odometry
     }
 
+    /// The number of scans whose stamps are far from those of the odometry.
+    pub(super) fn other_clock(&self) -> u64 {
+        self.other_clock
+    }
+
     /// The scans after the last odometry. `None` if there was no odometry.
     pub(super) fn finish(self) -> Option<impl Iterator<Item = PlacedScan>> {
-        self.last.map(|_| self.waiting.into_iter().map(|(_, scan)| scan))
+        let last = self.history.back().map(|(_, last)| *last)?;
+        let place = move |(time, scan): (Option<u64>, PlacedScan)| {
+            let odometry = if time.is_some() { last } else { scan.odometry };
+            PlacedScan { odometry, ..scan }
+        };
+        Some(self.waiting.into_iter().map(place))
     }
 }
 
@@ -109,30 +188,96 @@ mod tests {
         PlacedScan { source: EventSource::default(), scan: Arc::new(scan), odometry: at(-1.0) }
     }
 
+    fn places(scans: &[PlacedScan]) -> Vec<f64> {
+        scans.iter().map(|scan| scan.odometry.position[0]).collect()
+    }
+
     #[test]
     fn a_scan_between_two_readings_is_between_two_places_unless_the_clock_jumps() {
-        let places = |scans: &[PlacedScan]| {
-            scans.iter().map(|scan| scan.odometry.position[0]).collect::<Vec<_>>()
-        };
         for (time, next, expected) in [
             (10 * SECOND + SECOND / 4, 10 * SECOND + SECOND / 2, 1.5),
             (4_294_970_000 * SECOND, 11 * SECOND, -1.0),
             // After a gap.
-            (12 * SECOND, 60 * SECOND, -1.0),
+            (12 * SECOND, 60 * SECOND, 1.0),
         ] {
             let mut placing = ScanOdometry::default();
             assert!(placing.odometry(10 * SECOND, at(1.0)).is_empty());
-            assert!(placing.scan(time, scan()).is_none());
+            assert!(placing.scan(time, scan()).is_empty());
             assert_eq!(places(&placing.odometry(next, at(2.0))), [expected]);
             // A scan with the time of the last reading does not wait.
-            assert_eq!(places(placing.scan(next, scan()).as_slice()), [2.0]);
+            assert_eq!(places(&placing.scan(next, scan())), [2.0]);
         }
+    }
+
+    /// Ten readings and scans a second, each recorded so late after its stamp, in milliseconds. The robot drives a
+    /// metre in a second.
+    fn recorded(odometry_late: impl Fn(u64) -> u64, scan_late: impl Fn(u64) -> u64) -> Vec<f64> {
+        const TENTH: u64 = SECOND / 10;
+        let mut messages: Vec<(u64, u64, bool)> = (0..100)
+            .flat_map(|step| {
+                let [odometry, scan] =
+                    [10 * SECOND + step * TENTH, 10 * SECOND + step * TENTH + TENTH / 2];
+                let late = |milliseconds: u64| milliseconds * 1_000_000;
+                [
+                    (odometry + late(odometry_late(step)), odometry, false),
+                    (scan + late(scan_late(step)), scan, true),
+                ]
+            })
+            .collect();
+        messages.sort();
+        let mut placing = ScanOdometry::default();
+        let mut placed = Vec::new();
+        for (_, stamp, is_scan) in messages {
+            placed.extend(if is_scan {
+                placing.scan(stamp, scan())
+            } else {
+                placing.odometry(stamp, at((stamp - 10 * SECOND) as f64 / SECOND as f64))
+            });
+        }
+        placed.extend(placing.finish().unwrap());
+        placed.iter().map(|scan| scan.odometry.position[0]).collect()
+    }
+
+    #[test]
+    fn messages_are_placed_by_their_stamps_however_late_they_are_recorded() {
+        let prompt = recorded(|_| 0, |_| 0);
+        for (step, place) in prompt.iter().take(99).enumerate() {
+            assert!((place - (0.05 + step as f64 / 10.0)).abs() < 1e-9, "{prompt:?}");
+        }
+        let jitter = |step: u64| step * 37 % 290;
+        for late in [
+            recorded(|_| 0, |_| 200),
+            recorded(|_| 300, |_| 0),
+            recorded(jitter, |_| 0),
+            recorded(|_| 0, jitter),
+            recorded(jitter, |step| jitter(step + 5)),
+            recorded(|_| 0, |_| 3000),
+        ] {
+            assert_eq!(late, prompt);
+        }
+    }
+
+    #[test]
+    fn a_clock_that_was_set_begins_again() {
+        let mut placing = ScanOdometry::default();
+        placing.odometry(100 * SECOND, at(1.0));
+        assert!(placing.scan(100 * SECOND + 1, scan()).is_empty());
+        // What waited is where the log has it, and what comes is by the new clock.
+        assert_eq!(places(&placing.odometry(50 * SECOND, at(2.0))), [-1.0]);
+        assert!(placing.scan(50 * SECOND + SECOND / 4, scan()).is_empty());
+        assert_eq!(places(&placing.odometry(50 * SECOND + SECOND / 2, at(3.0))), [2.5]);
+        // Scans of another clock do not wait for long.
+        for _ in 0..3 {
+            assert!(placing.scan(9000 * SECOND, scan()).is_empty());
+        }
+        assert_eq!(places(&placing.odometry(51 * SECOND, at(4.0))), [-1.0; 3]);
+        assert_eq!(placing.other_clock(), 3);
     }
 
     #[test]
     fn without_odometry_no_scan_has_a_place() {
         let mut placing = ScanOdometry::default();
-        assert!((0..200).all(|time| placing.scan(time, scan()).is_none()));
+        assert!((0..200).all(|time| placing.scan(time, scan()).is_empty()));
         assert_eq!(placing.without_odometry(), 150);
         assert!(placing.finish().is_none());
     }

@@ -178,8 +178,7 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
     let LogReport { facts, verdict, events, .. } = report;
     let mut remarks: Vec<String> = other_world(facts).into_iter().collect();
     remarks.extend(facts.truncated.as_ref().map(|truncation| format!("the log is {truncation}")));
-    remarks.extend(skipped_lines(facts));
-    remarks.extend(skipped_messages(facts.skipped_messages));
+    remarks.extend(reading(facts));
     match &facts.ending {
         Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),
         Some(RunEnding::GaveUp(cause)) => {
@@ -245,13 +244,26 @@ pub fn other_world(facts: &Facts) -> Option<String> {
     Some(format!("the log was recorded in another world{comma}{}", recorded.world))
 }
 
+/// Remarks on what was skipped or repaired when the log was read.
+pub fn reading(facts: &Facts) -> Vec<String> {
+    let times = facts.line_times.map(|times| times.to_string());
+    let skipped = [skipped_lines(facts), times, skipped_messages(facts.skipped_messages)];
+    let other = facts.scans_of_other_clock as usize;
+    let other = (other > 0).then(|| {
+        let scans = counted(other, "scan");
+        format!("{scans} whose stamps are far from those of the odometry: placed by the order of the log")
+    });
+    let repaired = facts.reading.iter().map(ToString::to_string);
+    skipped.into_iter().flatten().chain(other).chain(repaired).collect()
+}
+
 /// A remark on the lines that were skipped; `None` if there are none.
-pub fn skipped_lines(facts: &Facts) -> Option<String> {
+fn skipped_lines(facts: &Facts) -> Option<String> {
     facts.skipped_lines.as_ref().map(|skipped| format!("skipped {skipped}"))
 }
 
 /// A remark on the messages that were skipped; `None` if there are none.
-pub fn skipped_messages(skipped: SkippedMessages) -> Option<String> {
+fn skipped_messages(skipped: SkippedMessages) -> Option<String> {
     let SkippedMessages { off_clock, scans_without_odometry } = skipped;
     let far = format!("{} whose time is far from that of all others", grouped(off_clock.into()));
     let scans = format!("{} without odometry", counted(scans_without_odometry as usize, "scan"));

@@ -6,6 +6,7 @@ use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped},
     percept::Door,
 };
+use toposlam_vision::laser::scan::Scan;
 
 use super::{
     carmen::{self, RecordedScan},
@@ -13,15 +14,17 @@ use super::{
     encode,
     error::{LogError, LogErrorKind},
     event_line::{self, Parsed},
-    fiducials::{FiducialSighting, Fiducials},
+    fiducials::{FiducialSighting, Fiducials, pose_at},
     from_value::FromValue,
     merge::{RawMessage, RawMessages},
     messages::{Hypothesis, Run, Stamp},
     reader::Log,
+    reading_remark::{ReadingRemark, Unusable},
+    scan_convention::{self, ScanRepairs},
     sensor_data::{self, image_of},
     topic::Encoding,
     topic_map::{BoundTopicMap, Carried, MessagePart, Role},
-    transforms::{self, Mounts},
+    transforms::{Mount, Mounts},
     value::Value,
 };
 use crate::record::{Arrival, EventId, EventKind, Frame};
@@ -40,6 +43,11 @@ pub struct Entry {
     pub stamp: Stamp,
     pub content: Content,
 }
+
+/// The usual type of odometry.
+const NAV_ODOMETRY: &str = "nav_msgs/Odometry";
+/// A robot is not farther from where it began, in metres.
+const FARTHEST: f64 = 1e7;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
@@ -60,16 +68,30 @@ pub struct Entries<'l> {
     fiducials: Fiducials,
     odometry: Odometry,
     next: VecDeque<Entry>,
+    unusable: Unusable,
+    repairs: ScanRepairs,
 }
 
 impl Log {
     /// Its entries by a topic map, in the order of time. Ends after the first error.
     pub fn entries(&self, mapping: &BoundTopicMap) -> Entries<'_> {
         let messages = self.read(&mapping.topics());
-        let (odometry, next) = (Odometry::default(), VecDeque::new());
-        let mounts = Mounts::new(self);
-        let fiducials = Fiducials::default();
-        Entries { log: self, bound: mapping.clone(), messages, mounts, fiducials, odometry, next }
+        let carried = |role| mapping.carried.iter().find(|carried: &&Carried| carried.role == role);
+        let odometry = carried(Role::Odometry).map(|carried| carried.topic);
+        let scans = carried(Role::Scan).map(|carried| carried.topic);
+        Entries {
+            log: self,
+            bound: mapping.clone(),
+            messages,
+            mounts: Mounts::new(self, mapping.scanner.clone(), odometry),
+            fiducials: Fiducials::default(),
+            odometry: Odometry::default(),
+            next: VecDeque::new(),
+            unusable: Unusable::default(),
+            repairs: ScanRepairs::new(
+                scans.and_then(|topic| scan_convention::of_topic(self, topic)),
+            ),
+        }
     }
 }
 
@@ -78,7 +100,7 @@ impl Iterator for Entries<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         while self.next.is_empty() {
-            let read = self.messages.next()?.and_then(|message| self.decode(&message));
+            let read = self.messages.next()?.and_then(|message| self.read(&message));
             if let Err(error) = read {
                 self.messages.end();
                 return Some(Err(error));
@@ -89,15 +111,37 @@ impl Iterator for Entries<'_> {
 }
 
 impl Entries<'_> {
+    /// What was repaired in the messages so far, and how many were skipped.
+    pub fn remarks(&self) -> Vec<ReadingRemark> {
+        let tracked = self.mounts.tracked_frame().map(str::to_owned);
+        let tracked = tracked.map(|frame| ReadingRemark::TrackedFrame { frame });
+        self.unusable.remark().into_iter().chain(tracked).chain(self.repairs.remarks()).collect()
+    }
+
+    /// Reads a message. One of a sensor that cannot be used is skipped, unless there are many.
+    fn read(&mut self, message: &RawMessage) -> Result<(), LogError> {
+        let Err(error) = self.decode(message) else { return Ok(()) };
+        let mut carried = self.bound.carried.iter().filter(|one| one.topic == message.topic);
+        let is_sensor = carried.all(|carried| carried.role.is_sensor());
+        let topic = self.log.topics().get(message.topic).filter(|_| is_sensor);
+        match (&error.cause, topic) {
+            (LogErrorKind::Content { .. }, Some(topic)) => {
+                self.unusable.add(error, message.topic, topic.messages)
+            }
+            _ => Err(error),
+        }
+    }
+
     fn decode(&mut self, message: &RawMessage) -> Result<(), LogError> {
         let log = self.log;
         let Some(topic) = log.topics().get(message.topic) else { return Ok(()) };
         let Some(file) = log.files.get(message.file) else { return Ok(()) };
         let RawMessage { time, offset, number, .. } = *message;
-        let wrong = |what| {
-            let topic = topic.name.clone();
-            file.error(LogErrorKind::Content { number, topic, what }, offset)
-        };
+        let name = || topic.name.clone();
+        let wrong =
+            |what| file.error(LogErrorKind::Content { number, topic: name(), what }, offset);
+        // What is the same for all messages.
+        let fixed = |what| file.error(LogErrorKind::Frame { number, topic: name(), what }, offset);
         if topic.encoding == Encoding::Event {
             let (stamp, contents) = self.event(file, message).map_err(wrong)?;
             for content in contents {
@@ -118,19 +162,27 @@ impl Entries<'_> {
             match (carried.role, &*carried.type_name) {
                 (Role::Scan, "sensor_msgs/LaserScan") => {
                     let frame_id: String = value.get("header.frame_id").unwrap_or_default();
-                    let mount = self.mounts.get(&frame_id)?;
-                    let scan = mount.and_then(|mount| sensor_data::scan_of(&value, &mount));
+                    let mount = self.mounts.get(&frame_id)?.map_err(fixed)?;
+                    let scan = sensor_data::scan_of(&value, &mount, &mut self.repairs);
                     let scan = Some(Arc::new(scan.map_err(wrong)?));
                     self.add(message, stamp, EventKind::Frame(Frame { scan, ..frame }).into());
                 }
                 (role @ (Role::Scan | Role::Odometry), _) if carried.own && is_carmen => {
                     let recorded = carmen::reading(&topic.type_name, &value, &file.text.parameters);
                     let RecordedScan { scan, odometry } = recorded.map_err(wrong)?;
-                    if role == Role::Odometry || self.bound.carries(Role::Odometry) {
+                    let is_wanted = role == Role::Odometry || self.bound.carries(Role::Odometry);
+                    if let Some(odometry) = odometry.filter(|_| is_wanted) {
+                        let odometry = on_earth(odometry).map_err(wrong)?;
                         self.add(message, stamp, EventKind::Odometry(odometry).into());
                     }
                     if role == Role::Scan {
+                        let mount = self.mounts.stated_mount();
+                        let scan = match mount {
+                            None => scan,
+                            Some(mount) => mounted(&scan, &mount).map_err(wrong)?,
+                        };
                         let scan = Some(Arc::new(scan));
+                        let odometry = odometry.unwrap_or(self.odometry);
                         let frame = Frame { odometry, scan, ..frame };
                         self.add(message, stamp, EventKind::Frame(frame).into());
                     }
@@ -144,10 +196,19 @@ impl Entries<'_> {
                     }
                 }
                 (Role::Odometry, _) if carried.own => {
-                    if let Some((odometry, stamped)) = transforms::odometry(&value) {
-                        let stamp = stamped.unwrap_or(stamp);
+                    if let Some((odometry, stamped)) = self.mounts.odometry(&value)? {
+                        let odometry = on_earth(odometry).map_err(wrong)?;
+                        let stamp =
+                            stamped.filter(|stamp| *stamp != Stamp::default()).unwrap_or(stamp);
                         self.add(message, stamp, EventKind::Odometry(odometry).into());
                     }
+                }
+                (Role::Odometry, NAV_ODOMETRY) if carried.is_usual => {
+                    let pose = pose_at(&value, "pose.pose").map_err(wrong)?;
+                    let child: String = value.get("child_frame_id").unwrap_or_default();
+                    let odometry = on_earth(self.mounts.odometry_of(&pose, &child)?);
+                    let kind = EventKind::Odometry(odometry.map_err(wrong)?);
+                    self.add(message, stamp, kind.into());
                 }
                 _ => {
                     let content = content(&carried, &value, frame).map_err(wrong)?;
@@ -198,6 +259,12 @@ impl Entries<'_> {
     }
 }
 
+/// A scan of a scanner whose mount is another one.
+fn mounted(scan: &Scan, mount: &Mount) -> Result<Scan, String> {
+    let scan = Scan::new(scan.geometry(), scan.ranges().to_vec(), mount.robot_from_scanner);
+    scan.map_err(|error| error.to_string())
+}
+
 impl From<EventKind> for Content {
     fn from(kind: EventKind) -> Self {
         Self::Event(kind)
@@ -206,7 +273,17 @@ impl From<EventKind> for Content {
 
 fn stamp(value: &Value<'_>, time: u64) -> Stamp {
     let found = ["stamp", "header.stamp"].into_iter().find_map(|path| value.get(path));
+    // Some drivers leave it 0.
+    let found = found.filter(|stamp| *stamp != Stamp::default());
     found.unwrap_or(Stamp::from_nanoseconds(time))
+}
+
+/// Odometry on the Earth, in metres and radians: larger numbers are errors.
+fn on_earth(odometry: Odometry) -> Result<Odometry, String> {
+    let Odometry { position: [x, y], heading } = odometry;
+    let is_near = [x, y].iter().all(|place| place.abs() <= FARTHEST);
+    let is_turn = heading.abs() <= FARTHEST;
+    if is_near && is_turn { Ok(odometry) } else { Err(format!("its pose is {x}, {y}, {heading}")) }
 }
 
 fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content, String> {
@@ -287,5 +364,5 @@ fn odometry(carried: &Carried, value: &Value<'_>) -> Result<Odometry, String> {
         }
     };
     let length = carried.length.in_metres();
-    Ok(Odometry { position: [x * length, y * length], heading: wrapped(heading) })
+    on_earth(Odometry { position: [x * length, y * length], heading: wrapped(heading) })
 }

@@ -95,14 +95,17 @@ pub enum LogErrorKind {
     Line(String),
     #[error("the line is longer than {} bytes", grouped(*.0 as u128))]
     LongLine(usize),
-    #[error("the clock jumps from {from:.3} s to {to:.3} s, and stays there")]
-    ClockJump { from: f64, to: f64 },
     #[error("a message of connection {0}, which has no record")]
     UnknownConnection(u32),
     #[error("a message has an earlier time than its chunk")]
     TooOld,
     #[error("message {number}, on {topic}: {what}")]
     Content { number: u64, topic: String, what: String },
+    /// The pose of a scanner on its robot is not known.
+    #[error("message {number}, on {topic}: {what}")]
+    Frame { number: u64, topic: String, what: String },
+    #[error("{first} (at least {} of {} messages on the topic cannot be used)", grouped((*count).into()), grouped((*all).into()))]
+    Unusable { first: Box<LogErrorKind>, count: u64, all: u64 },
 }
 
 impl LogErrorKind {

@@ -163,7 +163,8 @@ fn posed(message: &Value<'_>) -> Result<Placed, String> {
     Ok(Placed { frame, pose })
 }
 
-fn pose_at(value: &Value<'_>, path: &str) -> Result<Isometry3<f64>, String> {
+/// The pose at a path in a message.
+pub(super) fn pose_at(value: &Value<'_>, path: &str) -> Result<Isometry3<f64>, String> {
     let part = |name: &str| value.number_at(&format!("{path}.position.{name}"));
     let translation = [part("x")?, part("y")?, part("z")?];
     let rotation = value.quaternion_at(&format!("{path}.orientation"), Value::number_at)?;

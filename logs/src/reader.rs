@@ -1,6 +1,6 @@
 //! A log that is open for reading, and its topics.
 
-use std::{collections::BTreeMap, fs::File, io::Cursor, path::Path};
+use std::{collections::BTreeMap, fs::File, io::Cursor, path::Path, sync::Mutex};
 
 use super::{
     compressed::{FileCompression, Storage},
@@ -9,7 +9,9 @@ use super::{
         TEXT_HEAD, TextState,
     },
     error::{LogError, LogErrorKind, OffsetUnit, Truncation},
+    line_times::LineTimes,
     rosbag2,
+    scan_convention::NoReturnSign,
     skipped_lines::SkippedLines,
     source::Source,
     topic::{Topic, Topics},
@@ -28,6 +30,8 @@ pub struct Log {
     truncation: Option<Truncation>,
     times: Option<[u64; 2]>,
     indexed: bool,
+    /// How the scans on a topic write that there is no return, once it was asked for.
+    pub(super) no_returns: Mutex<BTreeMap<usize, Option<NoReturnSign>>>,
 }
 
 impl Log {
@@ -112,6 +116,7 @@ impl Log {
             truncation,
             times: None,
             indexed,
+            no_returns: Mutex::default(),
         };
         log.count();
         Ok(log)
@@ -156,6 +161,11 @@ impl Log {
     /// The lines that are skipped, of a log of lines; `None` if there are none.
     pub fn skipped(&self) -> Option<&SkippedLines> {
         self.files.first().map(|file| &file.text.skipped).filter(|skipped| !skipped.is_empty())
+    }
+
+    /// The times of a log of lines, if some are not those of a clock.
+    pub fn irregular_times(&self) -> Option<LineTimes> {
+        self.files.first().map(|file| file.text.times).filter(|times| times.irregular() > 0)
     }
 
     pub fn topics(&self) -> &[Topic] {

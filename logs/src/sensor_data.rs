@@ -3,7 +3,7 @@
 use image::RgbImage;
 use toposlam_vision::laser::scan::{Scan, ScanGeometry};
 
-use super::{transforms::Mount, value::Value};
+use super::{scan_convention::ScanRepairs, transforms::Mount, value::Value};
 use crate::record::CameraImage;
 
 pub(super) fn image_of(message: &Value<'_>) -> Result<CameraImage, String> {
@@ -51,19 +51,35 @@ pub(super) fn image_of(message: &Value<'_>) -> Result<CameraImage, String> {
     Ok(CameraImage::raw(made.ok_or("its size does not go with its pixels")?))
 }
 
-pub(super) fn scan_of(message: &Value<'_>, mount: &Mount) -> Result<Scan, String> {
+/// No angle of a scan is larger, in radians.
+const LARGEST_ANGLE: f64 = 100.0;
+
+pub(super) fn scan_of(
+    message: &Value<'_>,
+    mount: &Mount,
+    repairs: &mut ScanRepairs,
+) -> Result<Scan, String> {
     let sense = if mount.is_upside_down { -1.0 } else { 1.0 };
-    let geometry = ScanGeometry {
-        angle_min: sense * message.number_at("angle_min")?,
-        angle_increment: sense * message.number_at("angle_increment")?,
-        range_min: message.number_at("range_min")?,
-        range_max: message.number_at("range_max")?,
-    };
     let ranges = match message.at("ranges") {
         Some(Value::Numbers(ranges)) => ranges.iter().map(|range| range.f64()).collect(),
         _ => None,
     };
     let ranges: Vec<f64> = ranges.ok_or("it has no list of numbers `ranges`")?;
-    let ranges = ranges.into_iter().map(|range| range as f32).collect();
+    let [first, increment] =
+        [message.number_at("angle_min")?, message.number_at("angle_increment")?];
+    let last = message.number_at("angle_max").unwrap_or(f64::NAN);
+    for (name, angle) in [("angle_min", first), ("angle_increment", increment)] {
+        if angle.abs() > LARGEST_ANGLE {
+            return Err(format!("its {name} is {angle}"));
+        }
+    }
+    let increment = repairs.increment([first, last, increment], ranges.len())?;
+    let geometry = ScanGeometry {
+        angle_min: sense * first,
+        angle_increment: sense * increment,
+        range_min: message.number_at("range_min")?,
+        range_max: message.number_at("range_max")?,
+    };
+    let ranges = ranges.into_iter().map(|range| repairs.range(range)).collect();
     Scan::new(geometry, ranges, mount.robot_from_scanner).map_err(|error| error.to_string())
 }

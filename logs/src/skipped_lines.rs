@@ -13,8 +13,6 @@ pub struct SkippedLines {
     /// Of further kinds that are not known.
     #[serde(rename = "other_kinds")]
     pub others: u64,
-    /// Those whose clock is far from that of their neighbours.
-    pub off_clock: u64,
 }
 
 /// The largest number of kinds that are counted apart.
@@ -22,7 +20,7 @@ const KINDS: usize = 16;
 
 impl SkippedLines {
     pub fn is_empty(&self) -> bool {
-        self.unknown.is_empty() && self.off_clock == 0
+        self.unknown.is_empty()
     }
 
     pub(super) fn add_unknown(&mut self, kind: String) {
@@ -43,10 +41,6 @@ impl fmt::Display for SkippedLines {
             .collect();
         if self.others > 0 {
             parts.push(format!("{} of other kinds", count(self.others)));
-        }
-        if self.off_clock > 0 {
-            let lines = count(self.off_clock);
-            parts.push(format!("{lines} whose time is far from that of their neighbours"));
         }
         write!(out, "lines: {}", parts.join(", "))
     }

@@ -1,8 +1,8 @@
 //! The frames of a robot, as `/tf` and `/tf_static` relate them: the pose of a scanner on its robot, and
 //! odometry.
 //!
-//! The robot is `base_link`, `base_footprint` or `base`, and moves in the frame `odom` (REP 105). A slash
-//! before a name is ignored, and so is a name of the robot before a slash.
+//! The robot is `base_link`, `base_footprint` or `base`, or else the frame of which the odometry is, and moves in the
+//! frame `odom` (REP 105). A slash before a name is ignored, and so is a name of the robot before a slash.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,10 @@ use nalgebra::{Isometry2, Isometry3, UnitQuaternion, Vector3};
 use toposlam_model::driving::odometry::Odometry;
 use toposlam_vision::geometry::angle;
 
-use super::{error::LogError, messages::Stamp, reader::Log, standard::Quaternion, value::Value};
+use super::{
+    error::LogError, messages::Stamp, reader::Log, standard::Quaternion, topic::Topic,
+    topic_map::ScannerFrames, value::Value,
+};
 
 pub(super) const TYPE: &str = "tf2_msgs/TFMessage";
 pub(super) const OLD_TYPE: &str = "tf/tfMessage";
@@ -21,6 +24,8 @@ pub(super) fn is_transforms(type_name: &str) -> bool {
 
 const BASES: [&str; 3] = ["base_link", "base_footprint", "base"];
 const ODOM: &str = "odom";
+/// The frames in which a robot moves (REP 105), and other usual names of them.
+const FLOORS: [&str; 5] = [ODOM, "map", "world", "earth", "odom_combined"];
 /// More frames than any robot has between its scanner and its centre.
 const MOST_FRAMES: usize = 64;
 /// A scanner is level if its axis leans by less than this, as a cosine: about 25 degrees.
@@ -91,13 +96,14 @@ fn is_base(frame: &str) -> bool {
     BASES.iter().any(|base| is_called(frame, base))
 }
 
-/// The odometry in a message, and its time; `None` if it does not relate the robot to `odom`.
-pub(super) fn odometry(message: &Value<'_>) -> Option<(Odometry, Option<Stamp>)> {
-    let mut all = transforms(message).into_iter();
-    let FrameTransform { parent_from_child: odom_from_robot, stamp, .. } =
-        all.find(|transform| is_called(&transform.parent, ODOM) && is_base(&transform.child))?;
-    let position = odom_from_robot.translation.vector.xy().into();
-    Some((Odometry { position, heading: heading(&odom_from_robot) }, stamp))
+/// Whether a robot moves in a frame.
+fn is_floor(frame: &str) -> bool {
+    FLOORS.iter().any(|floor| is_called(frame, floor))
+}
+
+/// A pose on the floor, as odometry.
+fn to_floor(pose: &Isometry3<f64>) -> Odometry {
+    Odometry { position: pose.translation.vector.xy().into(), heading: heading(pose) }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,21 +113,50 @@ pub(super) struct Mount {
     pub(super) is_upside_down: bool,
 }
 
-/// The mounts of the scanners in a log, by their frames.
+/// The frames of a log, and the mounts of its scanners.
 pub(super) struct Mounts<'l> {
     log: &'l Log,
+    stated: ScannerFrames,
+    tree: Option<Tree>,
+    /// Whether transforms that may change are in the tree, too.
+    has_moving: bool,
     frames: BTreeMap<String, Result<Isometry3<f64>, String>>,
+    /// The topic of the odometry, and the frame that its first message names.
+    odometry: Option<usize>,
+    child: Option<String>,
+    /// The frame of which the odometry is, and its pose on the robot if it is another one.
+    tracked: Option<(String, Option<Isometry3<f64>>)>,
 }
 
 impl<'l> Mounts<'l> {
-    pub(super) fn new(log: &'l Log) -> Self {
-        Self { log, frames: BTreeMap::new() }
+    pub(super) fn new(log: &'l Log, stated: ScannerFrames, odometry: Option<usize>) -> Self {
+        Self {
+            log,
+            stated,
+            tree: None,
+            has_moving: false,
+            frames: BTreeMap::new(),
+            odometry,
+            child: None,
+            tracked: None,
+        }
     }
 
-    /// The mount of the scanner of a frame. In a log without transforms it is that of the robot's centre.
+    /// The mount of the scanner of a frame: as stated, or else by the transforms. In a log without transforms it is
+    /// that of the robot's centre.
     pub(super) fn get(&mut self, frame: &str) -> Result<Result<Mount, String>, LogError> {
+        if let Some(mount) = self.stated_mount() {
+            return Ok(Ok(mount));
+        }
         let frame = frame_name(frame);
         Ok(self.pose_of(&frame)?.and_then(|pose| mount(&pose, &frame)))
+    }
+
+    /// The mount that a topics file states.
+    pub(super) fn stated_mount(&self) -> Option<Mount> {
+        let [x, y, yaw] = self.stated.mount?;
+        let robot_from_scanner = Isometry2::new([x, y].into(), yaw);
+        Some(Mount { robot_from_scanner, is_upside_down: false })
     }
 
     /// The pose of a frame in that of the robot. In a log without transforms it is that of the robot's centre.
@@ -139,28 +174,126 @@ impl<'l> Mounts<'l> {
         Ok(found)
     }
 
-    fn find(&self, frame: &str) -> Result<Result<Isometry3<f64>, String>, LogError> {
-        let mut tree = Tree::default();
-        let is_static = |name: &str| name.ends_with("tf_static");
-        for wanted in [true, false] {
-            let topics = self.log.topics().iter().enumerate().filter(|(_, topic)| {
-                let kind = topic.short_type();
-                is_transforms(&kind) && is_static(&topic.name) == wanted
-            });
-            let topics: Vec<_> = topics.map(|(index, _)| index).collect();
-            if tree.read(self.log, &topics, frame)? {
-                break;
-            }
+    /// The odometry of the robot, from the pose of the frame that a message names.
+    pub(super) fn odometry_of(
+        &mut self,
+        odom_from_child: &Isometry3<f64>,
+        child: &str,
+    ) -> Result<Odometry, LogError> {
+        let child = frame_name(child);
+        if self.tracked.as_ref().is_none_or(|(frame, _)| *frame != child) {
+            // A frame that the tree does not have is the robot.
+            let pose = self.in_whole_tree(&child)?.filter(|pose| *pose != Isometry3::identity());
+            self.tracked = Some((child, pose));
         }
-        Ok(match tree.in_base(frame) {
-            Some(pose) => Ok(pose),
-            None if tree.parents.is_empty() => Ok(Isometry3::identity()),
-            None => Err(format!(
-                "its frame {frame:?} is not connected to the robot: no transform leads from it to {}",
-                BASES.join(", ")
-            )),
+        Ok(match &self.tracked {
+            Some((_, Some(base_from_child))) => {
+                to_floor(&(odom_from_child * base_from_child.inverse()))
+            }
+            _ => to_floor(odom_from_child),
         })
     }
+
+    /// The frame of which the odometry is, if it is another one than the robot's.
+    pub(super) fn tracked_frame(&self) -> Option<&str> {
+        let (frame, pose) = self.tracked.as_ref()?;
+        pose.as_ref().map(|_| frame.as_str())
+    }
+
+    /// The odometry in a message of transforms, and its time; `None` if it does not relate the robot to `odom`.
+    pub(super) fn odometry(
+        &mut self,
+        message: &Value<'_>,
+    ) -> Result<Option<(Odometry, Option<Stamp>)>, LogError> {
+        let mut found = None;
+        for transform in transforms(message) {
+            if is_called(&transform.parent, ODOM) {
+                let is_robot = self.is_robot(&transform.child);
+                if is_robot || found.is_none() && self.in_base(&transform.child)?.is_some() {
+                    found = Some(transform);
+                    if is_robot {
+                        break;
+                    }
+                }
+            }
+        }
+        let Some(FrameTransform { child, stamp, parent_from_child, .. }) = found else {
+            return Ok(None);
+        };
+        Ok(Some((self.odometry_of(&parent_from_child, &child)?, stamp)))
+    }
+
+    fn is_robot(&self, frame: &str) -> bool {
+        self.stated
+            .base_frame
+            .as_ref()
+            .map_or_else(|| is_base(frame), |base| is_called(frame, base))
+    }
+
+    fn find(&mut self, frame: &str) -> Result<Result<Isometry3<f64>, String>, LogError> {
+        Ok(match self.in_whole_tree(frame)? {
+            Some(pose) => Ok(pose),
+            None if self.tree.as_ref().is_none_or(|tree| !tree.has_transforms) => {
+                Ok(Isometry3::identity())
+            }
+            None => {
+                let base = self.stated.base_frame.as_ref().or(self.child.as_ref());
+                let bases = base.map_or_else(|| BASES.join(", "), Clone::clone);
+                Err(format!(
+                    "its frame {frame:?} is not connected to the robot: no transforms lead from it to {bases}; \
+                     a topics file can state where the scanner is: [scanner] mount = [x, y, yaw], in metres ahead \
+                     and to the left and radians; [scanner] base_frame names another frame of the robot"
+                ))
+            }
+        })
+    }
+
+    /// The pose of a frame on the robot, also by transforms that may change if the static ones do not have it.
+    fn in_whole_tree(&mut self, frame: &str) -> Result<Option<Isometry3<f64>>, LogError> {
+        let found = self.in_base(frame)?;
+        if found.is_some() || std::mem::replace(&mut self.has_moving, true) {
+            return Ok(found);
+        }
+        if let Some(tree) = &mut self.tree {
+            tree.read(self.log, false)?;
+        }
+        self.in_base(frame)
+    }
+
+    /// The pose of a frame on the robot, which is the nearest frame with the name of one, or else the frame of
+    /// odometry.
+    fn in_base(&mut self, frame: &str) -> Result<Option<Isometry3<f64>>, LogError> {
+        if self.tree.is_none() {
+            let mut tree = Tree::default();
+            tree.read(self.log, true)?;
+            self.tree = Some(tree);
+            self.child = first_child(self.log, self.odometry)?;
+        }
+        let Some(tree) = &self.tree else { return Ok(None) };
+        let named = tree.nearest(frame, |frame| self.is_robot(frame));
+        let child = self.child.as_deref().filter(|_| self.stated.base_frame.is_none());
+        Ok(named.or_else(|| tree.nearest(frame, |frame| Some(frame) == child)))
+    }
+}
+
+/// The frame that the first message of odometry names: its child, or that of `odom` among transforms.
+fn first_child(log: &Log, topic: Option<usize>) -> Result<Option<String>, LogError> {
+    let Some((index, topic)) = topic.and_then(|at| Some((at, log.topics().get(at)?))) else {
+        return Ok(None);
+    };
+    for message in log.read(&[index]) {
+        let message = message?;
+        let Some(Ok(value)) = topic.decode(&message.bytes) else { continue };
+        if !is_transforms(&topic.short_type()) {
+            let child: Option<String> = value.get("child_frame_id");
+            return Ok(child.map(|child| frame_name(&child)).filter(|child| !child.is_empty()));
+        }
+        let mut all = transforms(&value).into_iter();
+        if let Some(found) = all.find(|transform| is_odometry(&transform.parent)) {
+            return Ok(Some(found.child));
+        }
+    }
+    Ok(None)
 }
 
 fn mount(robot_from_scanner: &Isometry3<f64>, frame: &str) -> Result<Mount, String> {
@@ -173,41 +306,64 @@ fn mount(robot_from_scanner: &Isometry3<f64>, frame: &str) -> Result<Mount, Stri
     Ok(Mount { robot_from_scanner, is_upside_down: up < 0.0 })
 }
 
-/// The frames of a log: of each its parent, and its first pose there.
+/// The frames of a log: of each its neighbours, and their first poses in it. The frames in which the robot moves
+/// are left out.
 #[derive(Default)]
 struct Tree {
-    parents: BTreeMap<String, (String, Isometry3<f64>)>,
+    neighbours: BTreeMap<String, Vec<(String, Isometry3<f64>)>>,
+    /// Whether the log has any transform.
+    has_transforms: bool,
 }
 
 impl Tree {
-    /// Adds the transforms on some topics until a frame is connected to the robot; whether it is.
-    fn read(&mut self, log: &Log, topics: &[usize], frame: &str) -> Result<bool, LogError> {
-        for message in log.read(topics) {
+    /// Adds the transforms of a log that are static, or the others.
+    fn read(&mut self, log: &Log, is_static: bool) -> Result<(), LogError> {
+        let is_wanted = |topic: &Topic| {
+            is_transforms(&topic.short_type()) && topic.name.ends_with("tf_static") == is_static
+        };
+        let topics = log.topics().iter().enumerate().filter(|(_, topic)| is_wanted(topic));
+        let topics: Vec<_> = topics.map(|(index, _)| index).collect();
+        for message in log.read(&topics) {
             let message = message?;
             let topic = log.topics().get(message.topic);
             let Some(Ok(value)) = topic.and_then(|topic| topic.decode(&message.bytes)) else {
                 continue;
             };
-            for FrameTransform { parent, child, parent_from_child, .. } in transforms(&value) {
-                self.parents.entry(child).or_insert((parent, parent_from_child));
-            }
-            if self.in_base(frame).is_some() {
-                return Ok(true);
+            for transform in transforms(&value) {
+                self.add(transform);
             }
         }
-        Ok(self.in_base(frame).is_some())
+        Ok(())
     }
 
-    fn in_base(&self, frame: &str) -> Option<Isometry3<f64>> {
-        let mut pose = Isometry3::identity();
-        let mut here = frame;
-        for _ in 0..MOST_FRAMES {
-            if is_base(here) {
-                return Some(pose);
+    fn add(&mut self, FrameTransform { parent, child, parent_from_child, .. }: FrameTransform) {
+        self.has_transforms = true;
+        if is_floor(&parent) || is_floor(&child) {
+            return;
+        }
+        let known = self.neighbours.entry(parent.clone()).or_default();
+        if known.iter().any(|(frame, _)| *frame == child) {
+            return;
+        }
+        known.push((child.clone(), parent_from_child));
+        self.neighbours.entry(child).or_default().push((parent, parent_from_child.inverse()));
+    }
+
+    /// The pose of a frame in the nearest frame that is wanted.
+    fn nearest(&self, frame: &str, is_wanted: impl Fn(&str) -> bool) -> Option<Isometry3<f64>> {
+        let mut seen: Vec<(&str, Isometry3<f64>)> = vec![(frame, Isometry3::identity())];
+        let mut next = 0;
+        while let Some(&(here, here_from_frame)) = seen.get(next).filter(|_| next < MOST_FRAMES) {
+            next += 1;
+            if is_wanted(here) {
+                return Some(here_from_frame);
             }
-            let (parent, step) = self.parents.get(here)?;
-            pose = step * pose;
-            here = parent;
+            for (neighbour, here_from_neighbour) in self.neighbours.get(here).into_iter().flatten()
+            {
+                if seen.iter().all(|(frame, _)| frame != neighbour) {
+                    seen.push((neighbour, here_from_neighbour.inverse() * here_from_frame));
+                }
+            }
         }
         None
     }

@@ -179,8 +179,8 @@ fn fields<'py>(
 /// What a reader of the report should know about the run.
 fn remarks(facts: &Facts, is_resumed: bool) -> Vec<String> {
     let resumed = is_resumed.then(|| RESUMED_REMARK.to_owned());
-    let skipped = [words::skipped_lines(facts), words::skipped_messages(facts.skipped_messages)];
-    [words::other_world(facts), resumed].into_iter().chain(skipped).flatten().collect()
+    let first = [words::other_world(facts), resumed].into_iter().flatten();
+    first.chain(words::reading(facts)).collect()
 }
 
 /// An event: seconds since the first one, kind, percept, door, and the pose in the known world if only one fits.

@@ -215,8 +215,9 @@ fn shown(name: &str) -> String {
 }
 
 impl ListedLog<'_> {
-    /// Seconds.
+    /// Seconds; `None` if the times of its lines are not those of a clock.
     fn duration(&self) -> Option<f64> {
+        self.log.irregular_times().is_none_or(|times| times.are_known()).then_some(())?;
         let (start, end) = self.log.start().zip(self.log.end())?;
         Some(end.saturating_sub(start) as f64 / 1e9)
     }
@@ -263,6 +264,7 @@ impl ListedLog<'_> {
             "truncated": log.truncation().map(TruncatedLine::from),
             "indexed": self.is_indexed(),
             "skipped": log.skipped(),
+            "line_times": log.irregular_times(),
             "verification": verification.as_ref().map(|found| verification_json(found, outcome)),
             "topics": log.topics().iter().map(topic).collect::<Vec<_>>(),
             "mapping": mapping,
@@ -310,6 +312,9 @@ impl ListedLog<'_> {
         writeln!(out, "{}", counted(log.messages_total() as usize, "message"))?;
         if let Some(skipped) = log.skipped() {
             print_hanging(out, "", &format!("skipped {skipped}"))?;
+        }
+        if let Some(times) = log.irregular_times() {
+            print_hanging(out, "", &times.to_string())?;
         }
         writeln!(out)?;
         let row = |topic: &Topic| {

@@ -1,7 +1,7 @@
 //! What was checked, and against what.
 
 use serde::{Serialize, Serializer, ser::SerializeMap};
-use toposlam_logs::{SkippedLines, error::Truncation, record::RunEnding};
+use toposlam_logs::{LineTimes, ReadingRemark, SkippedLines, error::Truncation, record::RunEnding};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
@@ -41,6 +41,13 @@ pub struct Facts {
     /// The lines of a log of lines that are not read.
     #[serde(rename = "skipped")]
     pub skipped_lines: Option<SkippedLines>,
+    /// The times of a log of lines, if some are not those of a clock.
+    pub line_times: Option<LineTimes>,
+    /// What was repaired in the messages, and which could not be used.
+    #[serde(rename = "repaired")]
+    pub reading: Vec<ReadingRemark>,
+    /// The number of scans whose stamps are far from those of the odometry.
+    pub scans_of_other_clock: u64,
     pub recorded: Option<RecordedWorld>,
     #[serde(serialize_with = "recorded_ending")]
     pub ending: Option<RunEnding>,
@@ -170,6 +177,9 @@ impl CheckedLog {
             skipped_messages: extracted.skipped,
             truncated: source.log.truncation().cloned(),
             skipped_lines: source.log.skipped().cloned(),
+            line_times: source.log.irregular_times(),
+            reading: extracted.remarks.clone(),
+            scans_of_other_clock: extracted.scans_of_other_clock,
             recorded: source.head.filter(|run| !run.world_hash.is_empty()).map(|run| {
                 let known = known.as_ref();
                 RecordedWorld {

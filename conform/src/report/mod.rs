@@ -207,8 +207,10 @@ impl CheckedLog {
         let event = events.get(index);
         let time = event.or(events.last()).map_or(begun, |event| event.source.time);
         // Lines need not have stamps.
-        let has_times = source.log.format() != Format::Events
-            || events.iter().any(|event| event.source.time > 0);
+        let are_known = source.log.irregular_times().is_none_or(|times| times.are_known());
+        let has_times = are_known
+            && (source.log.format() != Format::Events
+                || events.iter().any(|event| event.source.time > 0));
         let (allowed, allowed_total) = self.allowed(cause);
         DivergenceReport {
             event: index + 1,

@@ -2,7 +2,6 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::{Isometry2, Vector2};
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use toposlam_vision::{
     geometry::from_robot,
@@ -17,10 +16,14 @@ const OLD_RANGE: f64 = 50.0;
 
 pub(crate) struct RecordedScan {
     pub(crate) scan: Scan,
-    pub(crate) odometry: Odometry,
+    /// `None` if only other lines have it.
+    pub(crate) odometry: Option<Odometry>,
 }
 
-/// The scan in a line of one of the types `carmen/FLASER`, `carmen/RLASER` and `carmen/ROBOTLASER1`.
+/// A scanner is within this distance of the centre of its robot, in metres.
+const REACH: f64 = 2.0;
+
+/// The scan in a line of one of the kinds that have one.
 pub(crate) fn reading(
     type_name: &str,
     line: &Value<'_>,
@@ -30,20 +33,27 @@ pub(crate) fn reading(
     let ranges = ranges.ok_or("it has no list `ranges`")?;
     let ranges: Vec<_> =
         ranges.iter().map(|range| range.f64().unwrap_or(f64::NAN) as f32).collect();
-    let odometry = pose(line, ["odom_x", "odom_y", "odom_theta"])?;
-    let (geometry, robot_from_scanner) = if type_name == "carmen/ROBOTLASER1" {
-        let scanner = pose(line, ["laser_x", "laser_y", "laser_theta"])?;
-        (geometry(line)?, from_robot(&odometry).inverse() * from_robot(&scanner))
-    } else {
-        let (ahead, heading) = match type_name {
-            "carmen/RLASER" => (parameters.rear_offset, PI),
-            _ => (parameters.front_offset, 0.0),
-        };
-        (old_geometry(ranges.len()), Isometry2::new(Vector2::new(ahead, 0.0), heading))
+    let is_rear = matches!(type_name, "carmen/RLASER" | "carmen/RAWLASER2" | "carmen/ROBOTLASER2");
+    let mount = if is_rear { parameters.rear } else { parameters.front };
+    let odometry = match line.at("odom_x") {
+        Some(_) => Some(pose(line, ["odom_x", "odom_y", "odom_theta"])?),
+        None => None,
     };
-    let scan =
-        Scan::new(geometry, ranges, robot_from_scanner).map_err(|error| error.to_string())?;
-    Ok(RecordedScan { scan, odometry })
+    let recorded = match (line.at("laser_x"), &odometry) {
+        (Some(_), Some(odometry)) => {
+            let scanner = pose(line, ["laser_x", "laser_y", "laser_theta"])?;
+            // In a corrected log the pose of the scanner is the corrected one.
+            let recorded = from_robot(odometry).inverse() * from_robot(&scanner);
+            Some(recorded).filter(|mount| mount.translation.vector.norm() <= REACH)
+        }
+        _ => None,
+    };
+    let geometry = match line.at("start_angle") {
+        Some(_) => geometry(line)?,
+        None => old_geometry(ranges.len()),
+    };
+    let scan = Scan::new(geometry, ranges, recorded.unwrap_or(mount.on_robot()));
+    Ok(RecordedScan { scan: scan.map_err(|error| error.to_string())?, odometry })
 }
 
 /// The angles of a line that does not record them, by the number of its readings, as CARMEN guesses them.

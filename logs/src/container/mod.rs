@@ -15,7 +15,7 @@ mod text;
 use std::{collections::BTreeMap, io, ops::Range};
 
 pub(super) use bag::MAGIC as BAG_MAGIC;
-use clock::Clock;
+use clock::{Clock, TimedLine};
 pub use compression::MOST_GROWTH;
 use compression::{Compression, ZSTANDARD, decompress, decompress_message};
 pub(super) use database::Database;

@@ -2,12 +2,15 @@
 
 use std::ops::Range;
 
-use super::{Clock, Failure, FileStructure, Format, Listener, Record, Section};
+use super::{
+    Clock, Failure, FileStructure, Format, Listener, Record, Section, TimedLine, clock::resolution,
+};
 use crate::{
     carmen::{self, Parameters},
     definition::{Definition, Dialect},
     error::{LogErrorKind, TruncationKind},
     event_line::{self, Columns, Parsed},
+    line_times::LineTimes,
     skipped_lines::SkippedLines,
     source::Source,
 };
@@ -26,6 +29,7 @@ pub(crate) struct TextState {
     pub(crate) parameters: Parameters,
     pub(crate) first_event: u32,
     pub(crate) skipped: SkippedLines,
+    pub(crate) times: LineTimes,
 }
 
 /// The format of a log that begins with these bytes, if it is one of lines.
@@ -41,11 +45,7 @@ enum Content {
     Nothing,
     Parameter,
     Unknown(String),
-    /// A message of a kind, with its time in seconds if it has one.
-    Message {
-        kind: u32,
-        time: Option<f64>,
-    },
+    Message { kind: u32, time: TimedLine },
 }
 
 fn content(format: Format, columns: Option<&Columns>, line: &[u8]) -> Result<Content, String> {
@@ -58,7 +58,10 @@ fn content(format: Format, columns: Option<&Columns>, line: &[u8]) -> Result<Con
             return Ok(Content::Nothing);
         }
         return Ok(match event_line::parse(line, columns)? {
-            Parsed::Event(event, _) => Content::Message { kind: 0, time: event.stamp },
+            Parsed::Event(event, _) => {
+                let time = TimedLine { time: event.stamp, ..TimedLine::default() };
+                Content::Message { kind: 0, time }
+            }
             Parsed::Other(kind) => Content::Unknown(kind),
         });
     }
@@ -66,15 +69,15 @@ fn content(format: Format, columns: Option<&Columns>, line: &[u8]) -> Result<Con
     if keyword == carmen::PARAMETER {
         return Ok(Content::Parameter);
     }
-    let mut kinds = carmen::KINDS.iter().zip(0..);
-    let Some((_, kind)) = kinds.find(|(kind, _)| kind.keyword.as_bytes() == keyword) else {
+    let Some((kind, known)) = carmen::kind_of(keyword, line) else {
         let beginning = keyword.get(..keyword.len().min(20)).unwrap_or_default();
         let shown = String::from_utf8_lossy(beginning).escape_debug().to_string();
         return Ok(Content::Unknown(shown));
     };
-    let time = carmen::logger_time(line);
-    let time = time.ok_or("its last word is not the time of the logger")?;
-    Ok(Content::Message { kind, time: Some(time) })
+    // A line without a time is not whole.
+    let (word, time) = carmen::logger_time(line).unwrap_or(("", f64::NAN));
+    let (time, resolution) = (Some(time), resolution(word));
+    Ok(Content::Message { kind, time: TimedLine { time, resolution, has_scan: known.has_scan() } })
 }
 
 pub(super) fn scan(
@@ -123,12 +126,8 @@ pub(super) fn scan(
                 state.skipped.add_unknown(name);
                 None
             }
-            Ok(Content::Message { kind, time }) => clock.tick(time).map(|time| (kind, time)),
+            Ok(Content::Message { kind, time }) => Some((kind, clock.tick(time, &mut state.times))),
         };
-        if let Some([from, to]) = clock.jump() {
-            let first = number + 1 - u64::from(Clock::MOST_OFF);
-            return Err((LogErrorKind::ClockJump { from, to }, first));
-        }
         if let Some((kind, _)) = message
             && seen & (1 << kind) == 0
         {
@@ -140,7 +139,6 @@ pub(super) fn scan(
         }
         add(&mut scan, line.start..line.end, (number, before), message);
     }
-    state.skipped.off_clock = clock.off_total;
     if source.is_cut {
         return Ok((scan.truncated(number, TruncationKind::Compressed), state));
     }
@@ -206,11 +204,12 @@ pub(super) fn record<'a>(
     let line = rest.get(..end).unwrap_or_default();
     let record = match content(format, state.columns.as_ref(), line) {
         Ok(Content::Message { kind, time }) => {
-            clock.tick(time).map(|time| Record::Message { connection: kind, time, bytes: 0..end })
+            let time = clock.tick(time, &mut LineTimes::default());
+            Record::Message { connection: kind, time, bytes: 0..end }
         }
-        _ => None,
+        _ => Record::Other,
     };
-    (record.unwrap_or(Record::Other), next)
+    (record, next)
 }
 
 struct Lines<'s> {

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use toposlam_model::format::document::DocumentError;
 
 use super::{
-    AngleUnit, Carrier, LengthUnit, MessagePart, Role, TopicMap, invalid, role::APRIL_TAGS,
+    AngleUnit, Carrier, LengthUnit, MessagePart, Role, ScannerFrames, TopicMap, invalid,
+    role::APRIL_TAGS,
 };
 use crate::{
     definition::{Count, Definition, FieldType},
@@ -16,6 +17,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct BoundTopicMap {
     pub(crate) carried: Vec<Carried>,
+    pub(crate) scanner: ScannerFrames,
 }
 
 /// A role that a topic carries, and the paths in its messages. A topic may carry several roles.
@@ -25,6 +27,8 @@ pub(crate) struct Carried {
     pub(crate) topic: usize,
     pub(crate) paths: BTreeMap<MessagePart, String>,
     pub(crate) own: bool,
+    /// Whether its paths and units are those that are usual for its type.
+    pub(crate) is_usual: bool,
     pub(crate) type_name: String,
     pub(crate) length: LengthUnit,
     pub(crate) angle: AngleUnit,
@@ -56,7 +60,7 @@ pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<BoundTopicMap
             ..tags.clone()
         }));
     }
-    Ok(BoundTopicMap { carried })
+    Ok(BoundTopicMap { carried, scanner: mapping.scanner.clone() })
 }
 
 fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, DocumentError> {
@@ -101,7 +105,9 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, D
     }
     let Carrier { length, angle, ref id, ref frame, .. } = *carrier;
     let (id, frame) = (id.clone(), frame.clone());
-    Ok(Carried { role, topic: index, paths, own, type_name, length, angle, id, frame })
+    let is_usual =
+        carrier.paths.is_empty() && (length, angle) == (LengthUnit::Metres, AngleUnit::Radians);
+    Ok(Carried { role, topic: index, paths, own, is_usual, type_name, length, angle, id, frame })
 }
 
 /// The parts without which there is nothing.

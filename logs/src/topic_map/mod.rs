@@ -31,6 +31,16 @@ use super::{reader::Log, topic::Topic};
 pub struct TopicMap {
     carriers: BTreeMap<Role, Carrier>,
     assumed: Option<MarkerPlace>,
+    scanner: ScannerFrames,
+}
+
+/// What a topics file states of the scanner, and transforms do not.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ScannerFrames {
+    /// Where the scanner is on the robot: metres ahead and to the left, and radians counter-clockwise.
+    pub mount: Option<[f64; 3]>,
+    /// The name of the frame of the robot.
+    pub base_frame: Option<String>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -112,7 +122,7 @@ impl TopicMap {
                 carriers.insert(role, Carrier::usual(&topic.name));
             }
         }
-        Self { carriers, assumed: None }
+        Self { carriers, ..Self::default() }
     }
 
     pub fn assumed_marker(&self) -> Option<MarkerPlace> {
@@ -127,7 +137,7 @@ impl TopicMap {
         }
         let mut whole = Self::unambiguous(log);
         whole.carriers.extend(self.carriers);
-        Self { assumed: self.assumed, ..whole }
+        Self { assumed: self.assumed, scanner: self.scanner, ..whole }
     }
 
     pub fn carrier(&self, role: Role) -> Option<&Carrier> {
@@ -139,14 +149,14 @@ impl TopicMap {
     }
 
     pub fn with_topic(role: Role, topic: &str) -> Self {
-        Self { carriers: BTreeMap::from([(role, Carrier::usual(topic))]), assumed: None }
+        Self { carriers: BTreeMap::from([(role, Carrier::usual(topic))]), ..Self::default() }
     }
 
     #[must_use]
     pub fn only<'r>(&self, roles: impl IntoIterator<Item = &'r Role>) -> Self {
         let carrier = |role: &Role| Some((*role, self.carriers.get(role)?.clone()));
         let carriers = roles.into_iter().filter_map(carrier).collect();
-        Self { carriers, assumed: None }
+        Self { carriers, assumed: None, scanner: self.scanner.clone() }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -189,6 +199,16 @@ impl TopicMap {
                 text.push('\n');
             }
             let _ = writeln!(text, "[marker]\nat = {place}");
+        }
+        let ScannerFrames { mount, base_frame } = &self.scanner;
+        if self.scanner != ScannerFrames::default() {
+            text.push_str(if text.is_empty() { "[scanner]\n" } else { "\n[scanner]\n" });
+        }
+        if let Some([x, y, yaw]) = mount {
+            let _ = writeln!(text, "mount = [{x:?}, {y:?}, {yaw:?}]");
+        }
+        if let Some(frame) = base_frame {
+            let _ = writeln!(text, "base_frame = {}", toml::Value::from(frame.as_str()));
         }
         text
     }

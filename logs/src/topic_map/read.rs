@@ -4,11 +4,15 @@ use std::collections::BTreeMap;
 
 use toposlam_model::format::document::{Document, DocumentError, DocumentValue};
 
-use super::{AngleUnit, Carrier, LengthUnit, MarkerPlace, MessagePart, Role, TopicMap, invalid};
+use super::{
+    AngleUnit, Carrier, LengthUnit, MarkerPlace, MessagePart, Role, ScannerFrames, TopicMap,
+    invalid,
+};
 
 pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, DocumentError> {
     let document = Document::parse_toml(bytes)?;
-    let file = document.root().table(&Role::ALL.map(Role::name))?;
+    let known: Vec<_> = Role::ALL.into_iter().map(Role::name).chain([SCANNER]).collect();
+    let file = document.root().table(&known)?;
     let mut carriers = BTreeMap::new();
     let mut assumed = None;
     for role in Role::ALL {
@@ -18,10 +22,31 @@ pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, DocumentError> {
             None => drop(carriers.insert(role, carrier(role, value)?)),
         }
     }
-    if carriers.is_empty() && assumed.is_none() {
+    let scanner = file.get(SCANNER).map(scanner).transpose()?.unwrap_or_default();
+    if carriers.is_empty() && assumed.is_none() && scanner == ScannerFrames::default() {
         return Err(invalid(&file.position(), "no topic is mapped".to_owned()));
     }
-    Ok(TopicMap { carriers, assumed })
+    Ok(TopicMap { carriers, assumed, scanner })
+}
+
+/// The table of what no transform states of the scanner.
+const SCANNER: &str = "scanner";
+
+fn scanner(value: DocumentValue<'_>) -> Result<ScannerFrames, DocumentError> {
+    const EXPECTED: &str = "a list of x, y and yaw: metres ahead and to the left, and radians";
+    let table = value.table(&["mount", "base_frame"])?;
+    let mount = |mount: DocumentValue<'_>| {
+        let numbers = mount.list(EXPECTED)?;
+        let numbers =
+            numbers.map(|number| number.number_in("a length or an angle", -100.0..=100.0));
+        let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
+        <[f64; 3]>::try_from(numbers).map_err(|_| mount.expected(EXPECTED))
+    };
+    let base = |frame| text(frame, "the name of a frame").map(str::to_owned);
+    Ok(ScannerFrames {
+        mount: table.get("mount").map(mount).transpose()?,
+        base_frame: table.get("base_frame").map(base).transpose()?,
+    })
 }
 
 fn assumed_marker(value: DocumentValue<'_>) -> Option<DocumentValue<'_>> {

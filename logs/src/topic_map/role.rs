@@ -14,6 +14,12 @@ pub(crate) const POSE_WITH_COVARIANCE: &str = "geometry_msgs/PoseWithCovarianceS
 const CARMEN_FRONT: &str = "carmen/FLASER";
 const CARMEN_REAR: &str = "carmen/RLASER";
 const CARMEN_ROBOT: &str = "carmen/ROBOTLASER1";
+const CARMEN_ROBOT_REAR: &str = "carmen/ROBOTLASER2";
+const CARMEN_ODOM: &str = "carmen/ODOM";
+const CARMEN_SHORT_ODOM: &str = "carmen/SHORT_ODOM";
+const CARMEN_READING: &str = "carmen/LASER_READING";
+const CARMEN_RAW: &str = "carmen/RAWLASER1";
+const CARMEN_RAW_REAR: &str = "carmen/RAWLASER2";
 
 macro_rules! words {
     ($($(#[$meta:meta])* $name:ident { $($(#[$doc:meta])* $value:ident = $word:literal,)* })*) => {$(
@@ -102,6 +108,11 @@ impl AngleUnit {
 }
 
 impl Role {
+    /// Whether sensors publish it again and again, so that one message more or less does not matter.
+    pub(crate) fn is_sensor(self) -> bool {
+        matches!(self, Self::Image | Self::Scan | Self::Odometry | Self::Motion)
+    }
+
     pub(super) fn parts(self) -> &'static [MessagePart] {
         match self {
             Self::Odometry => {
@@ -127,7 +138,11 @@ impl Role {
             | (Self::End, "toposlam_msgs/End")
             | (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image")
             | (Self::Scan, "sensor_msgs/LaserScan")
-            | (Self::Scan | Self::Odometry, CARMEN_FRONT | CARMEN_REAR | CARMEN_ROBOT)
+            | (
+                Self::Scan | Self::Odometry,
+                CARMEN_FRONT | CARMEN_REAR | CARMEN_ROBOT | CARMEN_ROBOT_REAR | CARMEN_READING,
+            )
+            | (Self::Scan, CARMEN_RAW | CARMEN_RAW_REAR)
             | (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS)
             | (Self::Percept | Self::Door, EVENT)
             | (Self::Marker, APRIL_TAGS | DETECTIONS | POSE | POSE_WITH_COVARIANCE) => &[],
@@ -141,9 +156,10 @@ impl Role {
                 (MessagePart::Y, "pose.position.y"),
                 (MessagePart::Quaternion, "pose.orientation"),
             ],
-            (Self::Odometry, "geometry_msgs/Pose2D" | "turtlesim/Pose" | "carmen/ODOM") => {
-                &[(MessagePart::X, "x"), (MessagePart::Y, "y"), (MessagePart::Heading, "theta")]
-            }
+            (
+                Self::Odometry,
+                "geometry_msgs/Pose2D" | "turtlesim/Pose" | CARMEN_ODOM | CARMEN_SHORT_ODOM,
+            ) => &[(MessagePart::X, "x"), (MessagePart::Y, "y"), (MessagePart::Heading, "theta")],
             (Self::Motion, "geometry_msgs/Twist") => {
                 &[(MessagePart::Forward, "linear.x"), (MessagePart::Turn, "angular.z")]
             }
@@ -157,9 +173,10 @@ impl Role {
     /// How well messages of a usual type carry it: a topic of a lower rank is preferred.
     pub(super) fn rank(self, type_name: &str) -> u32 {
         match (self, type_name) {
-            (Self::Odometry, "nav_msgs/Odometry" | "carmen/ODOM")
+            (Self::Odometry, "nav_msgs/Odometry" | CARMEN_ODOM | CARMEN_SHORT_ODOM)
             | (Self::Scan, "sensor_msgs/LaserScan" | CARMEN_ROBOT) => 0,
-            (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS) | (_, CARMEN_REAR) => 2,
+            (Self::Scan, CARMEN_ROBOT_REAR | CARMEN_RAW_REAR) => 3,
+            (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS) | (_, CARMEN_REAR | CARMEN_RAW) => 2,
             (Self::Odometry | Self::Scan, _) => 1,
             _ => 0,
         }
