@@ -33,7 +33,7 @@ use super::{
     marked_visits::{TimedSighting, VisitedJunction},
     message_clock::MessageClock,
     placed_scenes::{PlacedScenes, SceneClockError, SensedScene},
-    scan_odometry::{PlacedScan, ScanOdometry},
+    scan_odometry::{PlacedScan, ScanOdometry, StampCounts},
     visit_events::visit_events,
 };
 
@@ -75,8 +75,7 @@ pub struct ExtractedRun {
     pub skipped: SkippedMessages,
     /// What was repaired in the messages.
     pub remarks: Vec<ReadingRemark>,
-    /// The number of scans whose stamps are far from those of the odometry: the order of the log places them.
-    pub scans_of_other_clock: u64,
+    pub stamps: StampCounts,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
@@ -251,7 +250,7 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
             Content::Event(EventKind::Odometry(odometry)) => placing.odometry(stamp, odometry),
             Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) => {
                 let source = EventSource::default();
-                placing.scan(stamp, PlacedScan { source, scan, odometry })
+                placing.scan(PlacedScan { source, stamp, scan, odometry })
             }
             _ => return,
         };
@@ -263,7 +262,10 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
     for entry in log.entries(bound).map_while(Result::ok).filter(is_timed) {
         clock.next(entry.time, entry).into_iter().for_each(&mut take);
     }
-    clock.finish().0.into_iter().for_each(take);
+    clock.finish().0.into_iter().for_each(&mut take);
+    for placed in placing.finish().into_iter().flatten() {
+        meter.add_scan(&placed.scan, &placed.odometry);
+    }
     meter.finish()
 }
 
@@ -328,7 +330,7 @@ impl<W: Watch> Extraction<'_, W> {
         let scans_without_odometry = self.placing.without_odometry();
         self.run.skipped = SkippedMessages { off_clock, scans_without_odometry };
         self.run.remarks = entries.remarks();
-        self.run.scans_of_other_clock = self.placing.other_clock();
+        self.run.stamps = self.placing.counts();
         match std::mem::take(&mut self.placing).finish() {
             Some(waiting) => waiting.for_each(|placed| self.add_scan(placed)),
             None if self.run.scans > 0 => {
@@ -385,7 +387,7 @@ impl<W: Watch> Extraction<'_, W> {
             EventKind::Frame(Frame { scan: Some(scan), odometry, .. }) => {
                 self.run.scans += 1;
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
-                for placed in self.placing.scan(stamp, PlacedScan { source, scan, odometry }) {
+                for placed in self.placing.scan(PlacedScan { source, stamp, scan, odometry }) {
                     self.add_scan(placed);
                 }
             }
@@ -403,7 +405,7 @@ impl<W: Watch> Extraction<'_, W> {
     }
 
     /// Senses a laser scan.
-    fn add_scan(&mut self, PlacedScan { source, scan, odometry }: PlacedScan) {
+    fn add_scan(&mut self, PlacedScan { source, scan, odometry, .. }: PlacedScan) {
         // Scans are in the order of their stamps.
         self.last_scan = self.last_scan.max(source.time);
         let source = EventSource { time: self.last_scan, ..source };

@@ -3,6 +3,7 @@
 
 use std::{collections::VecDeque, sync::Arc};
 
+use serde::Serialize;
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use toposlam_vision::laser::scan::Scan;
 
@@ -12,6 +13,8 @@ use super::events::EventSource;
 #[derive(Clone, Debug)]
 pub(super) struct PlacedScan {
     pub source: EventSource,
+    /// In nanoseconds.
+    pub stamp: u64,
     pub scan: Arc<Scan>,
     pub odometry: Odometry,
 }
@@ -20,6 +23,8 @@ pub(super) struct PlacedScan {
 const GAP: u64 = 1_000_000_000;
 /// A message is recorded at most this late, in nanoseconds.
 const HISTORY: u64 = 5_000_000_000;
+/// Nearly every message is recorded a little late, in nanoseconds.
+const LATENCY: u64 = 100_000_000;
 /// A clock that goes back by more than this, in nanoseconds, was set.
 const LATE: u64 = 1_000_000_000;
 /// More scans do not wait for the first odometry.
@@ -40,27 +45,55 @@ pub(super) struct ScanOdometry {
     waiting: VecDeque<(Option<u64>, PlacedScan)>,
     /// The number of scans that waited in vain.
     without_odometry: u64,
-    /// The number of scans whose stamps are far from those of the odometry.
-    other_clock: u64,
+    /// The largest stamp of a scan so far.
+    last_scan: u64,
+    counts: StampCounts,
+    order: ScanOrder,
+}
+
+/// The number of messages that the order of the log would place wrongly.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct StampCounts {
+    /// Scans that were recorded after later odometry.
+    pub late_scans: u64,
+    /// Odometry that was recorded after later scans.
+    pub late_odometry: u64,
+    /// Scans whose stamps are far from those of the odometry; the order of the log places them.
+    pub other_clock: u64,
 }
 
 impl ScanOdometry {
-    /// Takes the next odometry in the log, with its stamp. Returns the scans that have waited for it.
+    /// Takes the next odometry in the log, with its stamp. Returns scans with the odometry at their times, in the
+    /// order of their stamps.
     pub(super) fn odometry(&mut self, time: u64, odometry: Odometry) -> Vec<PlacedScan> {
+        let placed = self.add_odometry(time, odometry);
+        self.order.add(placed)
+    }
+
+    /// Takes the next scan in the log, with the last odometry before it. Returns scans with the odometry at their
+    /// times, in the order of their stamps.
+    pub(super) fn scan(&mut self, scan: PlacedScan) -> Vec<PlacedScan> {
+        let placed = self.add_scan(scan);
+        self.order.add(placed)
+    }
+
+    fn add_odometry(&mut self, time: u64, odometry: Odometry) -> Vec<PlacedScan> {
         let mut placed = Vec::new();
         if self.last.replace(time).is_some_and(|last| time.saturating_add(LATE) < last) {
             // The clock was set.
+            self.last_scan = 0;
             placed.extend(self.waiting.drain(..).map(|(_, scan)| scan));
             self.has_earlier = true;
             self.history.clear();
         }
+        self.counts.late_odometry += u64::from(is_late(time, self.last_scan));
         let place = self.history.partition_point(|(other, _)| *other <= time);
         self.history.insert(place, (time, odometry));
         for (waiting, _) in &mut self.waiting {
             // It would have waited for seconds.
             if waiting.is_some_and(|waiting| waiting > time.saturating_add(HISTORY)) {
                 *waiting = None;
-                self.other_clock += 1;
+                self.counts.other_clock += 1;
             }
         }
         placed.extend(self.placed());
@@ -74,14 +107,15 @@ impl ScanOdometry {
         placed
     }
 
-    /// Takes the next scan in the log with its stamp, and with the last odometry before it. Returns the scans
-    /// whose odometry is known, in the order of their stamps.
-    pub(super) fn scan(&mut self, time: u64, scan: PlacedScan) -> Vec<PlacedScan> {
+    fn add_scan(&mut self, scan: PlacedScan) -> Vec<PlacedScan> {
+        let time = scan.stamp;
         let newest = self.newest();
+        self.last_scan = self.last_scan.max(time);
         if newest.is_some_and(|newest| time.saturating_add(HISTORY) < newest) {
-            self.other_clock += 1;
+            self.counts.other_clock += 1;
             self.waiting.push_back((None, scan));
         } else {
+            self.counts.late_scans += u64::from(is_late(time, newest.unwrap_or(0)));
             let is_before =
                 |(other, _): &(Option<u64>, PlacedScan)| other.is_none_or(|other| other <= time);
             let place = self.waiting.iter().rposition(is_before).map_or(0, |before| before + 1);
@@ -139,20 +173,60 @@ impl ScanOdometry {
         self.without_odometry
     }
 
-    /// The number of scans whose stamps are far from those of the odometry.
-    pub(super) fn other_clock(&self) -> u64 {
-        self.other_clock
+    /// The number of messages that the order of the log would place wrongly.
+    pub(super) fn counts(&self) -> StampCounts {
+        self.counts
     }
 
-    /// The scans after the last odometry. `None` if there was no odometry.
+    /// The scans that still wait, those after the last odometry among them. `None` if there was no odometry.
     pub(super) fn finish(self) -> Option<impl Iterator<Item = PlacedScan>> {
         let last = self.history.back().map(|(_, last)| *last)?;
         let place = move |(time, scan): (Option<u64>, PlacedScan)| {
             let odometry = if time.is_some() { last } else { scan.odometry };
             PlacedScan { odometry, ..scan }
         };
-        Some(self.waiting.into_iter().map(place))
+        let mut order = self.order;
+        let placed = order.add(self.waiting.into_iter().map(place).collect());
+        Some(placed.into_iter().chain(order.waiting))
     }
+}
+
+/// Puts scans in the order of their stamps.
+#[derive(Clone, Debug, Default)]
+struct ScanOrder {
+    waiting: VecDeque<PlacedScan>,
+    latest: u64,
+}
+
+impl ScanOrder {
+    /// The largest number of scans that wait for an earlier one.
+    const MOST: usize = 64;
+
+    /// Adds scans. Returns those before which no scan is expected.
+    fn add(&mut self, scans: Vec<PlacedScan>) -> Vec<PlacedScan> {
+        let mut released = Vec::new();
+        for scan in scans {
+            if self.latest.abs_diff(scan.stamp) > HISTORY {
+                // It has another clock, or it begins.
+                released.extend(self.waiting.drain(..));
+                self.latest = scan.stamp;
+            }
+            self.latest = self.latest.max(scan.stamp);
+            let is_before = |other: &PlacedScan| other.stamp <= scan.stamp;
+            let place = self.waiting.iter().rposition(is_before).map_or(0, |before| before + 1);
+            self.waiting.insert(place, scan);
+            let due = self.latest.saturating_sub(LATE);
+            let due = self.waiting.partition_point(|waiting| waiting.stamp <= due);
+            let due = due.max(self.waiting.len().saturating_sub(Self::MOST));
+            released.extend(self.waiting.drain(..due));
+        }
+        released
+    }
+}
+
+/// Whether a message was recorded clearly after another one with a later stamp.
+fn is_late(time: u64, other: u64) -> bool {
+    (LATENCY..=HISTORY).contains(&other.saturating_sub(time))
 }
 
 /// The odometry at a time between two different readings.
@@ -181,11 +255,16 @@ mod tests {
     }
 
     /// A scan that has the odometry -1 before it in the log.
-    fn scan() -> PlacedScan {
+    fn scan(stamp: u64) -> PlacedScan {
         let geometry =
             ScanGeometry { angle_min: 0.0, angle_increment: 1.0, range_min: 0.1, range_max: 9.0 };
         let scan = Scan::new(geometry, vec![1.0], nalgebra::Isometry2::identity()).unwrap();
-        PlacedScan { source: EventSource::default(), scan: Arc::new(scan), odometry: at(-1.0) }
+        PlacedScan {
+            source: EventSource::default(),
+            stamp,
+            scan: Arc::new(scan),
+            odometry: at(-1.0),
+        }
     }
 
     fn places(scans: &[PlacedScan]) -> Vec<f64> {
@@ -201,11 +280,11 @@ mod tests {
             (12 * SECOND, 60 * SECOND, 1.0),
         ] {
             let mut placing = ScanOdometry::default();
-            assert!(placing.odometry(10 * SECOND, at(1.0)).is_empty());
-            assert!(placing.scan(time, scan()).is_empty());
-            assert_eq!(places(&placing.odometry(next, at(2.0))), [expected]);
+            assert!(placing.add_odometry(10 * SECOND, at(1.0)).is_empty());
+            assert!(placing.add_scan(scan(time)).is_empty());
+            assert_eq!(places(&placing.add_odometry(next, at(2.0))), [expected]);
             // A scan with the time of the last reading does not wait.
-            assert_eq!(places(&placing.scan(next, scan())), [2.0]);
+            assert_eq!(places(&placing.add_scan(scan(next))), [2.0]);
         }
     }
 
@@ -229,7 +308,7 @@ mod tests {
         let mut placed = Vec::new();
         for (_, stamp, is_scan) in messages {
             placed.extend(if is_scan {
-                placing.scan(stamp, scan())
+                placing.scan(scan(stamp))
             } else {
                 placing.odometry(stamp, at((stamp - 10 * SECOND) as f64 / SECOND as f64))
             });
@@ -253,31 +332,33 @@ mod tests {
             recorded(jitter, |step| jitter(step + 5)),
             recorded(|_| 0, |_| 3000),
         ] {
-            assert_eq!(late, prompt);
+            assert_eq!(late.len(), prompt.len());
+            let off = late.iter().zip(&prompt).map(|(late, prompt)| (late - prompt).abs());
+            assert!(off.into_iter().all(|off| off < 1e-9), "{late:?}");
         }
     }
 
     #[test]
     fn a_clock_that_was_set_begins_again() {
         let mut placing = ScanOdometry::default();
-        placing.odometry(100 * SECOND, at(1.0));
-        assert!(placing.scan(100 * SECOND + 1, scan()).is_empty());
+        placing.add_odometry(100 * SECOND, at(1.0));
+        assert!(placing.add_scan(scan(100 * SECOND + 1)).is_empty());
         // What waited is where the log has it, and what comes is by the new clock.
-        assert_eq!(places(&placing.odometry(50 * SECOND, at(2.0))), [-1.0]);
-        assert!(placing.scan(50 * SECOND + SECOND / 4, scan()).is_empty());
-        assert_eq!(places(&placing.odometry(50 * SECOND + SECOND / 2, at(3.0))), [2.5]);
+        assert_eq!(places(&placing.add_odometry(50 * SECOND, at(2.0))), [-1.0]);
+        assert!(placing.add_scan(scan(50 * SECOND + SECOND / 4)).is_empty());
+        assert_eq!(places(&placing.add_odometry(50 * SECOND + SECOND / 2, at(3.0))), [2.5]);
         // Scans of another clock do not wait for long.
         for _ in 0..3 {
-            assert!(placing.scan(9000 * SECOND, scan()).is_empty());
+            assert!(placing.add_scan(scan(9000 * SECOND)).is_empty());
         }
-        assert_eq!(places(&placing.odometry(51 * SECOND, at(4.0))), [-1.0; 3]);
-        assert_eq!(placing.other_clock(), 3);
+        assert_eq!(places(&placing.add_odometry(51 * SECOND, at(4.0))), [-1.0; 3]);
+        assert_eq!(placing.counts().other_clock, 3);
     }
 
     #[test]
     fn without_odometry_no_scan_has_a_place() {
         let mut placing = ScanOdometry::default();
-        assert!((0..200).all(|time| placing.scan(time, scan()).is_empty()));
+        assert!((0..200).all(|time| placing.add_scan(scan(time)).is_empty()));
         assert_eq!(placing.without_odometry(), 150);
         assert!(placing.finish().is_none());
     }

@@ -25,6 +25,7 @@ use super::{
         LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RequiredCoverage,
         WorldFact,
     },
+    scan_odometry::StampCounts,
     twin::TwinWorld,
 };
 
@@ -248,13 +249,23 @@ pub fn other_world(facts: &Facts) -> Option<String> {
 pub fn reading(facts: &Facts) -> Vec<String> {
     let times = facts.line_times.map(|times| times.to_string());
     let skipped = [skipped_lines(facts), times, skipped_messages(facts.skipped_messages)];
-    let other = facts.scans_of_other_clock as usize;
-    let other = (other > 0).then(|| {
-        let scans = counted(other, "scan");
-        format!("{scans} whose stamps are far from those of the odometry: placed by the order of the log")
-    });
     let repaired = facts.reading.iter().map(ToString::to_string);
-    skipped.into_iter().flatten().chain(other).chain(repaired).collect()
+    skipped.into_iter().chain(stamps(facts.stamps)).flatten().chain(repaired).collect()
+}
+
+/// Remarks on messages that were not recorded in the order of their stamps.
+fn stamps(counts: StampCounts) -> [Option<String>; 2] {
+    let StampCounts { late_scans, late_odometry, other_clock } = counts;
+    let late = [(late_scans, "scan"), (late_odometry, "odometry reading")];
+    let late = late.into_iter().filter(|(count, _)| *count > 0);
+    let late: Vec<_> = late.map(|(count, what)| counted(count as usize, what)).collect();
+    let late = (!late.is_empty())
+        .then(|| format!("recorded late, and placed by the stamps: {}", late.join(", ")));
+    let other = (other_clock > 0).then(|| {
+        let scans = counted(other_clock as usize, "scan");
+        format!("placed by the order of the log: {scans} whose stamps are far from those of the odometry")
+    });
+    [late, other]
 }
 
 /// A remark on the lines that were skipped; `None` if there are none.

@@ -28,6 +28,9 @@ const ODOM: &str = "odom";
 const FLOORS: [&str; 5] = [ODOM, "map", "world", "earth", "odom_combined"];
 /// More frames than any robot has between its scanner and its centre.
 const MOST_FRAMES: usize = 64;
+/// What to do if no transforms lead from a scanner to the robot.
+const STATE_IT: &str = "a topics file (--topics) can state where the scanner is, in metres ahead and to the left and \
+                        radians: [scanner] mount = [x, y, yaw]; or the frame of the robot: base_frame = \"NAME\"";
 /// A scanner is level if its axis leans by less than this, as a cosine: about 25 degrees.
 const LEVEL: f64 = 0.9;
 
@@ -149,7 +152,8 @@ impl<'l> Mounts<'l> {
             return Ok(Ok(mount));
         }
         let frame = frame_name(frame);
-        Ok(self.pose_of(&frame)?.and_then(|pose| mount(&pose, &frame)))
+        let pose = self.pose_of(&frame)?.map_err(|what| format!("{what}; {STATE_IT}"));
+        Ok(pose.and_then(|pose| mount(&pose, &frame)))
     }
 
     /// The mount that a topics file states.
@@ -240,9 +244,7 @@ impl<'l> Mounts<'l> {
                 let base = self.stated.base_frame.as_ref().or(self.child.as_ref());
                 let bases = base.map_or_else(|| BASES.join(", "), Clone::clone);
                 Err(format!(
-                    "its frame {frame:?} is not connected to the robot: no transforms lead from it to {bases}; \
-                     a topics file can state where the scanner is: [scanner] mount = [x, y, yaw], in metres ahead \
-                     and to the left and radians; [scanner] base_frame names another frame of the robot"
+                    "its frame {frame:?} is not connected to the robot: no transform leads from it to {bases}"
                 ))
             }
         })

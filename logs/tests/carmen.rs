@@ -11,7 +11,7 @@ use std::{
 use flate2::{Compression, read::GzDecoder, write::GzEncoder};
 use nalgebra::Point2;
 use toposlam_logs::{
-    Format,
+    Format, ReadingRemark,
     entries::{Content, Entry},
     error::{LogErrorKind, TruncationKind},
     reader::Log,
@@ -67,10 +67,11 @@ fn the_lines_of_a_carmen_log_are_scans_and_odometry() {
         let log = Log::of_bytes(bytes).unwrap();
         assert_eq!((log.format(), log.truncation()), (Format::Carmen, None));
         let topics = log.topics().iter().map(|topic| (&*topic.name, topic.messages));
-        assert!(topics.eq([("ODOM", 2), ("FLASER", 1), ("RLASER", 1)]));
+        assert!(topics.eq([("ODOM", 4), ("FLASER", 1), ("RLASER", 1)]));
         let skipped = log.skipped().unwrap();
         assert_eq!(skipped.unknown, ["NEFF", "SYNC"].map(|kind| (kind.to_owned(), 1)).into());
-        assert_eq!(skipped.off_clock, 2);
+        // The lines after scans need no time of their own.
+        assert_eq!(log.irregular_times(), None);
         assert_eq!((log.start(), log.end()), (Some(10_500_000_000), Some(12_000_000_000)));
         // The front scanner is preferred.
         let mapping = TopicMap::from_log(&log).unwrap();
@@ -91,7 +92,7 @@ fn the_lines_of_a_carmen_log_are_scans_and_odometry() {
             Content::Event(EventKind::Odometry(odometry)) => Some(odometry.position[0]),
             _ => None,
         };
-        assert!(entries(&log).into_iter().filter_map(x).eq([1.0, 1.0, 4.0]));
+        assert!(entries(&log).into_iter().filter_map(x).eq([1.0, 1.0, 2.0, 3.0, 4.0]));
         let rear = entries_of(&log, &map("[scan]\ntopic = \"RLASER\"")).unwrap();
         let Content::Event(EventKind::Frame(frame)) = &rear[0].content else { panic!() };
         let scan = frame.scan.as_ref().unwrap();
@@ -117,27 +118,94 @@ fn the_newer_message_records_its_angles_and_the_pose_of_its_scanner() {
 }
 
 #[test]
-fn a_wrong_line_is_an_error_with_its_number() {
+fn a_wrong_line_is_skipped_unless_all_are_wrong() {
     let odom = "ODOM 1 2 0 0 0 0 5 h 5\n";
-    let ranges =
-        "message 2, on FLASER: byte 31 of the message, `ranges`: \"h\" is not a number of its kind";
-    let left = "message 2, on ODOM: byte 22 of the message: 1 words are left over";
-    for (lines, message) in [
+    let ranges = "on FLASER: byte 31 of the message, `ranges`: \"h\" is not a number of its kind";
+    let five =
+        "on ODOM: byte 21 of the message, `logger_timestamp`: \"five\" is not a number of its kind";
+    for (line, message) in [
         ("FLASER 180 1 2 3 0 0 0 0 0 0 5 h 5", ranges),
-        ("ODOM 1 2 0 0 0 0 5 h five", "its last word is not the time of the logger"),
-        ("ODOM 1 2 nan 0 0 0 5 h 5", "message 2, on ODOM: its `theta` is NaN"),
-        ("ODOM 1 2 0 0 0 0 5 h 5 5", left),
-        ("FLASER 0 0 0 0 0 0 0 5 h 5", "message 2, on FLASER: the scan has no readings"),
+        ("ODOM 1 2 0 0 0 0 5 h five", five),
+        ("ODOM 1 2 nan 0 0 0 5 h 5", "on ODOM: its `theta` is NaN"),
+        ("ODOM 1e30 2 0 0 0 0 5 h 5", "on ODOM: its pose is 1000000000000000000000000000000, 2, 0"),
+        ("ODOM 1 2 0 0 0 0 5 h 5 5", "on ODOM: byte 22 of the message: 1 words are left over"),
+        ("FLASER 0 0 0 0 0 0 0 5 h 5", "on FLASER: the scan has no readings"),
     ] {
-        let found = error(&format!("{odom}{lines}\n{odom}"));
-        assert_eq!(found, format!("line 2: {message}"), "{lines}");
+        assert_eq!(error(&format!("{line}\n")), format!("line 1: message 1, {message}"), "{line}");
+        let log = Log::of_bytes(format!("{odom}{line}\n{odom}").into()).unwrap();
+        if line.starts_with("ODOM") {
+            let map = TopicMap::from_log(&log).unwrap().bind(&log).unwrap();
+            let mut read = log.entries(&map);
+            assert_eq!(read.by_ref().map(Result::unwrap).count(), 2, "{line}");
+            let first = format!("line 2: message 2, {message}");
+            assert_eq!(read.remarks(), [ReadingRemark::Unusable { count: 1, first }]);
+        }
     }
-    let jump = |lines| format!("{odom}\n{}", "ODOM 1 2 0 0 0 0 5 h 8000.25\n".repeat(lines));
-    assert_eq!(Log::of_bytes(jump(9).into()).unwrap().skipped().unwrap().off_clock, 9);
-    let expected = "line 3: the clock jumps from 5.000 s to 8000.250 s, and stays there";
-    assert_eq!(error(&jump(10)), expected);
+    // Ten are few.
+    let many = |wrong| odom.repeat(20) + &"ODOM nan 2 0 0 0 0 5 h 5\n".repeat(wrong);
+    let read = |wrong| {
+        let log = Log::of_bytes(many(wrong).into()).unwrap();
+        entries_of(&log, &TopicMap::from_log(&log).unwrap()).map(|entries| entries.len())
+    };
+    assert_eq!(read(10), Ok(20));
+    let cause = "its `x` is NaN (at least 11 of 31 messages on the topic cannot be used)";
+    assert_eq!(read(11), Err(format!("line 21: message 21, on ODOM: {cause}")));
     let long = format!("{odom}FLASER {}", "1 ".repeat(600_000));
     assert_eq!(error(&long), "line 2: the line is longer than 1,048,576 bytes");
+}
+
+/// The order of the lines decides, whatever their times.
+#[test]
+fn lines_are_read_in_their_order_whatever_their_times() {
+    let line = |(number, time): (usize, &&str)| {
+        format!("FLASER 2 1 1 0 0 0 {number} 0 0 {time} h {time}\nODOM {number} 0 0 0 0 0 0 h 0\n")
+    };
+    for (times, counts) in [
+        (&["0", "0", "7.5", "1.25", "0", "8"][..], [2, 1, 0, 0]),
+        (&["0", "-0.5", "-1", "4.29497e+09", "-2"], [0, 2, 1, 0]),
+        (&["1.13486e+09", "1.13486e+09", "1.13487e+09"], [0, 0, 0, 3]),
+        (&["5", "5.5", "8000.25", "8000.75", "9"], [0, 0, 2, 0]),
+    ] {
+        let text: String = times.iter().enumerate().map(line).collect();
+        let log = Log::of_bytes(text.into()).unwrap();
+        let read = scans(&log);
+        assert!(read.iter().map(|(_, at, _)| at[0]).eq((0..times.len()).map(|place| place as f64)));
+        assert!(read.is_sorted_by_key(|(time, ..)| *time), "{times:?}");
+        let found = log.irregular_times().unwrap();
+        assert_eq!([found.missing, found.back, found.ahead, found.rounded], counts, "{times:?}");
+        assert!(!found.are_known());
+    }
+}
+
+/// A scan of three readings, the pose of the robot if the line has it, and its odometry from other lines.
+#[test]
+fn the_kinds_of_scans_are_read_alike() {
+    let odom = "ODOM 1 2 0.5 0 0 0 5 h 5\n";
+    let angles = "0 -1.5707963 3.1415927 1.5707963 50 0.01 0 3 1.5 49.5 50 0";
+    for (line, topic) in [
+        ("FLASER 3 1.5 49.5 50 9 9 9 1 2 0.5 5 h 5".to_owned(), "FLASER"),
+        (format!("RAWLASER1 {angles} 5 h 5"), "RAWLASER1"),
+        (format!("ROBOTLASER1 {angles} 1 2 0.5 1 2 0.5 0 0 0 0 0 5 h 5"), "ROBOTLASER1"),
+        // The corrected pose of the scanner is no mount.
+        (format!("ROBOTLASER1 {angles} 9 9 2 1 2 0.5 0 0 0 0 0 5 h 5"), "ROBOTLASER1"),
+        ("LASER_READING 3 1.5 49.5 50 1 2 0.5 5".to_owned(), "LASER_READING"),
+    ] {
+        for odom in [odom, "ODOM 1 2 0.5 5\n"] {
+            let log = Log::of_bytes(format!("{odom}{line}\n").into()).unwrap();
+            let map = TopicMap::from_log(&log).unwrap();
+            assert_eq!(map.carrier(Role::Scan).unwrap().topic, topic);
+            let [(time, odometry, scan)] = &scans(&log)[..] else { panic!("{line}") };
+            assert_eq!((*time, *odometry), (5_000_000_000, [1.0, 2.0, 0.5]), "{line}");
+            assert!(scan.scanner().coords.norm() < 1e-6 && scan.heading().abs() < 1e-6, "{line}");
+            let readings: Vec<_> = scan.readings().map(|(_, reading)| reading).collect();
+            assert_eq!(readings, [Reading::Hit(1.5), Reading::Hit(49.5), Reading::NoReturn]);
+        }
+    }
+    let offsets = "PARAM robot_frontlaser_offset 0.25 h 0\nPARAM robot_frontlaser_side_offset -0.5 h 0\n\
+                   PARAM robot_frontlaser_angular_offset 90 h 0\n";
+    let log = Log::of_bytes(format!("{offsets}{odom}RAWLASER1 {angles} 5 h 5\n").into()).unwrap();
+    let [(_, _, scan)] = &scans(&log)[..] else { panic!() };
+    assert_eq!((scan.scanner(), scan.heading()), (Point2::new(0.25, -0.5), FRAC_PI_2));
 }
 
 #[test]
@@ -160,10 +228,10 @@ fn a_log_that_was_cut_is_read_up_to_its_last_whole_line() {
     let cut = Log::of_bytes(SMALL.as_bytes()[..whole - 10].to_vec()).unwrap();
     let truncation = cut.truncation().unwrap();
     assert_eq!(truncation.to_string(), "truncated at line 11: it ends in the middle of a record");
-    assert_eq!(cut.messages_total(), 3);
+    assert_eq!(cut.messages_total(), 5);
     // Without the end of its last line it is whole.
     let log = Log::of_bytes(SMALL.trim_end().as_bytes().to_vec()).unwrap();
-    assert_eq!((log.truncation(), log.messages_total()), (None, 4));
+    assert_eq!((log.truncation(), log.messages_total()), (None, 6));
     let text = SMALL.repeat(500);
     let packed = gzip(text.as_bytes());
     let cut = Log::of_bytes(packed[..packed.len() - 20].to_vec()).unwrap();
@@ -180,8 +248,8 @@ fn folder() -> Option<PathBuf> {
     recorded_logs("carmen", "TOPOSLAM_CARMEN_LOGS", "aces.log.gz")
 }
 
-/// The number of scans, of readings in each and of all odometry; of the lines off the clock, which are those
-/// that an editor of these logs added with time 0, and a few at the end of the last one.
+/// The number of scans, of readings in each and of all odometry, with the lines that an editor of these logs added
+/// with time 0.
 #[test]
 fn the_logs_of_real_robots_are_read_as_awk_reads_them() {
     let Some(folder) = folder() else { return };
@@ -196,7 +264,8 @@ fn the_logs_of_real_robots_are_read_as_awk_reads_them() {
         let skipped = log.skipped().unwrap();
         assert_eq!(skipped.unknown["NEFF"], count as u64);
         let messages = log.topics().iter().find(|topic| topic.name == "ODOM").unwrap().messages;
-        assert_eq!(messages + skipped.off_clock, odometry, "{name}");
+        assert_eq!(messages, odometry, "{name}");
+        assert_eq!(log.irregular_times(), None, "{name}");
         // By another way: the words of the lines.
         let mut text = String::new();
         GzDecoder::new(File::open(&path).unwrap()).read_to_string(&mut text).unwrap();

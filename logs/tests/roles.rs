@@ -179,7 +179,7 @@ fn raw_image(encoding: &str, [width, height]: [u32; 2], step: u32, data: &[u8]) 
 #[test]
 fn invalid_messages_are_reported_with_their_numbers() {
     let mut short = twist();
-    short.3.push(vec![0; 47]);
+    short.3 = vec![vec![0; 47]];
     let mut nowhere = twist();
     nowhere.3[0][..8].copy_from_slice(&f64::NAN.to_le_bytes());
     let mut unmarked = junction();
@@ -191,7 +191,7 @@ fn invalid_messages_are_reported_with_their_numbers() {
         (
             short,
             motion,
-            "message 2, on /cmd_vel: byte 40 of the message, `angular`: 8 more bytes are needed, and 7 are left",
+            "message 1, on /cmd_vel: byte 40 of the message, `angular`: 8 more bytes are needed, and 7 are left",
         ),
         (nowhere, motion, "message 1, on /cmd_vel: its `linear.x` is NaN"),
         (unmarked, percept, "message 1, on /junction: it has no `arrow[0]`"),

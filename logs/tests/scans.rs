@@ -4,7 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::Point2;
 use toposlam_logs::{
-    entries::Content,
+    ReadingRemark,
+    entries::{Content, Entry},
     reader::Log,
     record::{EventKind, Frame},
     topic_map::{Role, TopicMap},
@@ -13,7 +14,10 @@ use toposlam_vision::laser::scan::Reading;
 
 use super::{
     entries, entries_of,
-    ros1::{HEADER, LEFT, LEVEL, Topic, header, log_of, odometry, transforms, whole},
+    ros1::{
+        HEADER, LEFT, LEVEL, Topic, Transform, header, log_of, odometry, pose, text, transforms,
+        whole,
+    },
 };
 
 /// First angle, increment, least and largest range, ranges.
@@ -85,8 +89,74 @@ fn a_scanner_that_is_not_connected_or_not_level_is_an_error() {
         let circle = ("laser", "plate", [0.0; 3], LEVEL);
         let transforms = transforms("/tf", &[(parent, "laser", [0.0; 3], turn), circle]);
         let error = read(&[scan(USUAL, &[1.0]), transforms]).unwrap_err();
-        assert!(error.ends_with(&format!(": message 1, on /scan: {message}")), "{error}");
+        assert!(error.contains(&format!(": message 1, on /scan: {message}")), "{error}");
+        assert_eq!(error.contains("[scanner] mount = [x, y, yaw]"), message == apart, "{error}");
     }
+}
+
+/// Odometry of a frame at (1, 2) that looks along y.
+fn odometry_of(child: &str) -> Topic {
+    let (name, type_name, definition, _) = odometry();
+    let fields = "Header header\nstring child_frame_id\n";
+    let message = [header(8, "odom"), text(child), pose([1.0, 2.0, 0.0], LEFT)].concat();
+    (name, type_name, definition.replacen("Header header\n", fields, 1), vec![message])
+}
+
+/// Where the scanner is, by the frame of a log's odometry, its transforms, and a topics file.
+fn scanner_pose(child: &str, edges: &[Transform], topics: &str) -> [f64; 3] {
+    let odometry = odometry_of(child);
+    let log = log_of(&[scan(USUAL, &[1.0]), odometry, transforms("/tf_static", edges)]);
+    let log = Log::of_bytes(log).unwrap();
+    let map = match topics {
+        "" => TopicMap::from_log(&log).unwrap(),
+        _ => TopicMap::read(topics.as_bytes()).unwrap().completed(&log),
+    };
+    let pose = entries_of(&log, &map).unwrap().into_iter().find_map(|entry| match entry.content {
+        Content::Event(EventKind::Frame(frame)) => frame.scan,
+        _ => None,
+    });
+    let pose = pose.unwrap().robot_from_scanner();
+    [pose.translation.x, pose.translation.y, pose.rotation.angle()]
+}
+
+#[test]
+fn frames_are_connected_in_any_direction_and_the_robot_has_any_name() {
+    let near = |found: [f64; 3], expected: [f64; 3]| {
+        let off = found.iter().zip(expected).map(|(one, other)| (one - other).abs());
+        assert!(off.into_iter().all(|off| off < 1e-6), "{found:?} {expected:?}");
+    };
+    let ahead = |parent, child| (parent, child, [0.5, 0.25, 0.0], LEVEL);
+    let turned = |parent, child| (parent, child, [0.5, 0.25, 0.0], LEFT);
+    // Siblings, and a reversed tree.
+    let siblings = [("chassis", "base_link", [0.1, 0.0, 0.0], LEVEL), ahead("chassis", "laser")];
+    near(scanner_pose("base_link", &siblings, ""), [0.4, 0.25, 0.0]);
+    near(scanner_pose("base_link", &[turned("laser", "base_link")], ""), [-0.25, 0.5, -FRAC_PI_2]);
+    // A robot of another name.
+    near(scanner_pose("/r1/hull", &[turned("r1/hull", "laser")], ""), [0.5, 0.25, FRAC_PI_2]);
+    let hull = "[scanner]\nbase_frame = \"hull\"\n";
+    let two = [ahead("hull", "base_link"), ahead("base_link", "laser")];
+    near(scanner_pose("base_link", &two, hull), [1.0, 0.5, 0.0]);
+    // What a topics file states.
+    let mount = "[scanner]\nmount = [-0.25, 0, 3.14]\n";
+    near(scanner_pose("base_link", &[ahead("map", "laser")], mount), [-0.25, 0.0, 3.14]);
+}
+
+#[test]
+fn odometry_of_another_frame_is_that_of_the_robot() {
+    // A camera 0.5 m ahead that looks to the left.
+    let camera = ("base_link", "cam", [0.5, 0.0, 0.0], LEFT);
+    let log = log_of(&[odometry_of("cam"), transforms("/tf_static", &[camera])]);
+    let log = Log::of_bytes(log).unwrap();
+    let map = TopicMap::from_log(&log).unwrap().bind(&log).unwrap();
+    let mut read = log.entries(&map);
+    let entries: Vec<_> = read.by_ref().map(Result::unwrap).collect();
+    let [Entry { content: Content::Event(EventKind::Odometry(at)), .. }] = &entries[..] else {
+        panic!("{entries:?}")
+    };
+    // The camera is at 1, 2 and looks along y: the robot looks along x, and is half a metre behind.
+    assert!((at.position[0] - 0.5).abs() < 1e-9 && (at.position[1] - 2.0).abs() < 1e-9, "{at:?}");
+    assert!(at.heading.abs() < 1e-9, "{at:?}");
+    assert_eq!(read.remarks(), [ReadingRemark::TrackedFrame { frame: "cam".to_owned() }]);
 }
 
 #[test]

@@ -22,6 +22,7 @@ use super::super::{
     log_head::LogHead,
     marked_visits::AddedMarker,
     measured_hallways::MeasuredHallways,
+    scan_odometry::StampCounts,
     twin::TwinWorld,
 };
 use super::events::PoseName;
@@ -46,8 +47,7 @@ pub struct Facts {
     /// What was repaired in the messages, and which could not be used.
     #[serde(rename = "repaired")]
     pub reading: Vec<ReadingRemark>,
-    /// The number of scans whose stamps are far from those of the odometry.
-    pub scans_of_other_clock: u64,
+    pub stamps: StampCounts,
     pub recorded: Option<RecordedWorld>,
     #[serde(serialize_with = "recorded_ending")]
     pub ending: Option<RunEnding>,
@@ -179,7 +179,7 @@ impl CheckedLog {
             skipped_lines: source.log.skipped().cloned(),
             line_times: source.log.irregular_times(),
             reading: extracted.remarks.clone(),
-            scans_of_other_clock: extracted.scans_of_other_clock,
+            stamps: extracted.stamps,
             recorded: source.head.filter(|run| !run.world_hash.is_empty()).map(|run| {
                 let known = known.as_ref();
                 RecordedWorld {
