@@ -102,8 +102,8 @@ pub enum ExtractError {
     #[error(transparent)]
     TopicMap(#[from] DocumentError),
     #[error(
-        "no topics are known for percepts and doors, nor for scenes, images or laser scans with odometry; \
-         `toposlam info` lists the topics"
+        "no topics are known for percepts and doors, nor for scenes, images or laser scans with \
+         odometry"
     )]
     NothingMapped,
     /// Images must be sensed without a calibration or colours.
@@ -152,7 +152,20 @@ impl Evidence {
 
     /// Whether a topic map has this source of events.
     pub fn is_in(self, mapping: &TopicMap) -> bool {
-        self.roles().iter().take(2).all(|role| mapping.carrier(*role).is_some())
+        self.needs().iter().all(|role| mapping.carrier(*role).is_some())
+    }
+
+    /// The roles without which there are no events.
+    pub fn needs(self) -> &'static [Role] {
+        self.roles().get(..2).unwrap_or_default()
+    }
+
+    /// Its name as a value of `--events`.
+    pub fn option(self) -> &'static str {
+        match self {
+            Self::Images => "images",
+            other => other.name(),
+        }
     }
 
     /// The roles that it needs, two of them, and what it uses besides.

@@ -26,6 +26,7 @@ impl LogError {
             LogErrorKind::Unreadable(_)
             | LogErrorKind::NoBagFiles
             | LogErrorKind::NoDatabases
+            | LogErrorKind::Encrypted(_)
             | LogErrorKind::Metadata { .. } => file,
             _ => format!("{file}{} {}: ", self.unit.name(), self.offset),
         }
@@ -61,6 +62,8 @@ pub enum LogErrorKind {
     NotALog,
     #[error("this is a bag of version {0}; only version 2.0 can be read")]
     Version(String),
+    #[error("the bag is encrypted ({0}): decrypt it first, with `rosbag decrypt`")]
+    Encrypted(String),
     #[error("the record is malformed: {0}")]
     Malformed(&'static str),
     #[error("the compression {0:?} is not known; known are {1}")]
@@ -77,6 +80,8 @@ pub enum LogErrorKind {
     Checksum(&'static str),
     #[error("the index counts {indexed} messages, and there are {found}, or on other topics")]
     Count { indexed: u64, found: u64 },
+    #[error("the index lists {listed} of the {all} chunks, or some of them twice")]
+    ChunkIndex { listed: usize, all: usize },
     #[error("the time of a message is outside of the times of its chunk")]
     OutsideTimes,
     #[error("this folder has no metadata.yaml, and no .db3 or .mcap file")]
@@ -117,6 +122,7 @@ impl LogErrorKind {
             Self::Unreadable(_)
                 | Self::NotALog
                 | Self::Version(_)
+                | Self::Encrypted(_)
                 | Self::Compression(..)
                 | Self::NoDatabases
                 | Self::NoBagFiles

@@ -9,7 +9,7 @@ use std::{borrow::Cow, fmt};
 
 use serde::{
     Deserialize, Deserializer,
-    de::{Error, Visitor},
+    de::{Error, Unexpected, Visitor},
 };
 use toposlam_model::percept::Sighting;
 
@@ -26,12 +26,14 @@ const NAMES: [&str; 6] = ["index", "stamp", "degree", "door", "marker", "turned_
 
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub(super) struct VisitLine {
+    #[serde(default, deserialize_with = "whole")]
     pub(super) index: Option<u32>,
     /// When it was, in seconds.
     pub(super) stamp: Option<f64>,
     #[serde(default, deserialize_with = "given")]
     degree: LineDegree,
     /// The door by which the robot left, clockwise from the way back; `None` if the log ends there.
+    #[serde(default, deserialize_with = "whole")]
     pub(super) door: Option<u32>,
     /// The marker; `None`: not recorded.
     marker: Option<LineMarker>,
@@ -56,7 +58,51 @@ enum LineDegree {
 
 /// A field that is there, even if it is `null`.
 fn given<'d, D: Deserializer<'d>>(deserializer: D) -> Result<LineDegree, D::Error> {
-    Deserialize::deserialize(deserializer).map(LineDegree::Given)
+    whole(deserializer).map(LineDegree::Given)
+}
+
+/// A whole number, also as `1.0`, which tables of numbers that may be missing write.
+fn whole<'d, D: Deserializer<'d>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+    let number: Option<Whole> = Deserialize::deserialize(deserializer)?;
+    Ok(number.map(|Whole(number)| number))
+}
+
+/// The whole number that a decimal one is.
+fn whole_of(number: f64) -> Option<i64> {
+    (number.fract() == 0.0 && number.abs() < 1e15).then_some(number as i64)
+}
+
+struct Whole(u32);
+
+impl<'d> Deserialize<'d> for Whole {
+    fn deserialize<D: Deserializer<'d>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(WholeVisitor)
+    }
+}
+
+struct WholeVisitor;
+
+impl Visitor<'_> for WholeVisitor {
+    type Value = Whole;
+
+    fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str("u32")
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<Whole, E> {
+        let whole = u32::try_from(number).map(Whole);
+        whole.map_err(|_| E::invalid_value(Unexpected::Signed(number), &self))
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<Whole, E> {
+        let whole = u32::try_from(number).map(Whole);
+        whole.map_err(|_| E::invalid_value(Unexpected::Unsigned(number), &self))
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<Whole, E> {
+        let whole = whole_of(number).and_then(|number| u32::try_from(number).ok());
+        whole.map(Whole).ok_or_else(|| E::invalid_value(Unexpected::Float(number), &self))
+    }
 }
 
 impl<'d> Deserialize<'d> for LineMarker {
@@ -84,6 +130,32 @@ impl Visitor<'_> for MarkerVisitor {
 
     fn visit_u64<E: Error>(self, door: u64) -> Result<LineMarker, E> {
         Ok(LineMarker::Door(i64::try_from(door).unwrap_or(i64::MAX)))
+    }
+
+    fn visit_f64<E: Error>(self, door: f64) -> Result<LineMarker, E> {
+        let whole = whole_of(door).map(LineMarker::Door);
+        whole.ok_or_else(|| E::invalid_value(Unexpected::Float(door), &self))
+    }
+}
+
+/// What programs write in the cell of a table without a value.
+const EMPTY: [&str; 7] = ["", "null", "nan", "na", "<na>", "none", "n/a"];
+
+fn is_empty(cell: &str) -> bool {
+    EMPTY.iter().any(|empty| cell.eq_ignore_ascii_case(empty))
+}
+
+/// A whole number in a cell.
+fn whole_cell(cell: &str) -> Option<i64> {
+    cell.parse().ok().or_else(|| whole_of(cell.parse().ok()?))
+}
+
+/// A truth in a cell.
+fn bool_cell(cell: &str) -> Option<bool> {
+    match cell {
+        _ if cell.eq_ignore_ascii_case("true") => Some(true),
+        _ if cell.eq_ignore_ascii_case("false") => Some(false),
+        _ => None,
     }
 }
 
@@ -157,26 +229,32 @@ impl Columns {
         }
         for (cell, column) in cells.into_iter().zip(&self.0) {
             let Some(name) = column.and_then(|column| NAMES.get(column)) else { continue };
-            if cell.is_empty() || cell == "null" {
+            if is_empty(&cell) {
                 if *name == "degree" {
                     event.degree = LineDegree::Given(None);
                 }
                 continue;
             }
             let wrong = || format!("its {name} is {:?}", cell.chars().take(20).collect::<String>());
+            let whole = || {
+                let number = whole_cell(&cell).and_then(|number| u32::try_from(number).ok());
+                number.ok_or_else(wrong)
+            };
             match *name {
-                "index" => event.index = Some(cell.parse().map_err(|_| wrong())?),
+                "index" => event.index = Some(whole()?),
                 "stamp" => event.stamp = Some(cell.parse().map_err(|_| wrong())?),
-                "degree" => {
-                    event.degree = LineDegree::Given(Some(cell.parse().map_err(|_| wrong())?));
-                }
-                "door" => event.door = Some(cell.parse().map_err(|_| wrong())?),
+                "degree" => event.degree = LineDegree::Given(Some(whole()?)),
+                "door" => event.door = Some(whole()?),
                 "marker" => {
-                    let seen = cell.parse().map(LineMarker::Seen);
-                    let door = || cell.parse().map(LineMarker::Door);
-                    event.marker = Some(seen.or_else(|_| door()).map_err(|_| wrong())?);
+                    let seen = bool_cell(&cell).map(LineMarker::Seen);
+                    let door = || whole_cell(&cell).map(LineMarker::Door);
+                    event.marker = Some(seen.or_else(door).ok_or_else(wrong)?);
                 }
-                _ => event.turned_back = Some(cell.parse().map_err(|_| wrong())?),
+                _ => {
+                    let number = || whole_cell(&cell).filter(|number| (0..=1).contains(number));
+                    let turned = bool_cell(&cell).or_else(|| number().map(|number| number == 1));
+                    event.turned_back = Some(turned.ok_or_else(wrong)?);
+                }
             }
         }
         Ok(event)
@@ -272,6 +350,10 @@ mod tests {
             // A marker that points nowhere.
             (r#"{"degree":2,"door":1,"marker":true}"#, ",,2,1,true,,"),
             (r#"{"degree":2,"door":1,"marker":false}"#, ",,2,1,false,,"),
+            // As tables of numbers that may be missing are written.
+            (r#"{"index":3.0,"degree":2.0,"door":1.0,"marker":-1.0}"#, "3.0,nan,2.0,1.0,-1.0,NaN,"),
+            (r#"{"degree":2,"door":null,"turned_back":true}"#, "NA,,2,<NA>,None,True,"),
+            (r#"{"degree":2,"door":0,"marker":false,"turned_back":false}"#, ",,2,0,FALSE,0.0,"),
             // Not recognised, after turning back.
             (r#"{"degree":null,"turned_back":true}"#, ",,,,,true,"),
         ] {
@@ -313,6 +395,8 @@ degree,door,stamp | 2,1,9e99 | its stamp is 9e99; seconds are expected
  | {"degree":2,"marker":"north"} | invalid type: string "north", expected the marker: a door, -1, true, false or null
 degree,door | 2 | it has 1 cells, and the header 2
 degree,door | 2,x | its door is "x"
+degree,door | 2,1.5 | its door is "1.5"
+ | {"degree":2.5} | invalid value: floating point `2.5`, expected u32
  | {"degree":2,"turned_back":1} | invalid type: integer `1`, expected a boolean"#;
 
     #[test]

@@ -118,8 +118,7 @@ own! {
 }
 
 /// The schema of a published type or one of the project, for logs that do not define their messages: databases of
-/// rosbag2 before ROS 2 Iron.
-#[cfg(feature = "sqlite")]
+/// rosbag2 before ROS 2 Iron, and MCAP files whose recorder had no definitions.
 pub(super) fn published_schema(type_name: &str) -> Option<String> {
     use super::{
         definition::short_name,
@@ -131,7 +130,7 @@ pub(super) fn published_schema(type_name: &str) -> Option<String> {
     text.map(schema)
 }
 
-#[cfg(all(test, feature = "sqlite"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::{

@@ -203,8 +203,11 @@ fn open_file(path: &Path) -> Result<LogFile, LogError> {
 
 fn open(storage: Box<dyn Storage>, path: Option<&Path>) -> Result<LogFile, LogError> {
     let wrong = |cause: LogErrorKind| cause.at(0);
-    let source = Source::new(storage).map_err(|error| wrong(error.into()))?;
+    let mut source = Source::new(storage).map_err(|error| wrong(error.into()))?;
     let format = format(&source)?;
+    if matches!(format, Format::Bag | Format::Mcap) && source.compression.is_none() {
+        source.end_before_zeros().map_err(|error| wrong(error.into()))?;
+    }
     let database = match format {
         Format::Database if source.is_cut => {
             return Err(LogErrorKind::CutDatabase.at(source.length()));

@@ -15,16 +15,22 @@ const MOST_FILES: usize = 10_000;
 const ENDINGS: [&str; 2] = [".db3", ".mcap"];
 const COMPRESSED: &str = ".zstd";
 
-/// The names of the files of a folder. Without `metadata.yaml`, which a recorder writes last, these are all files
-/// with a known ending.
+/// The names of the files of a folder. Without `metadata.yaml`, which a recorder writes last, or if that is empty,
+/// these are all files with a known ending.
 pub(super) fn names(folder: &Path) -> Result<Vec<String>, LogError> {
     let unreadable = |error: io::Error| LogErrorKind::from(error).at(0);
-    match fs::read(folder.join(METADATA)) {
-        Ok(bytes) => file_names(&bytes),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+    let metadata = fs::read(folder.join(METADATA));
+    // A recorder that crashed may have left an empty one.
+    let is_left_out = match &metadata {
+        Ok(bytes) => bytes.iter().all(|byte| byte.is_ascii_whitespace() || *byte == 0),
+        Err(error) => error.kind() == io::ErrorKind::NotFound,
+    };
+    match metadata {
+        _ if is_left_out => {
             let found = all_names(folder).map_err(unreadable)?;
             if found.is_empty() { Err(LogErrorKind::NoBagFiles.at(0)) } else { Ok(found) }
         }
+        Ok(bytes) => file_names(&bytes),
         Err(error) => Err(in_metadata(unreadable(error))),
     }
 }

@@ -34,6 +34,28 @@ impl Source {
         Ok(Self { storage: Mutex::new(storage), length, size, compression, is_cut })
     }
 
+    /// Ends the file before the zeros at its end, if there are many: a computer that lost power has not written
+    /// what belongs there.
+    pub(super) fn end_before_zeros(&mut self) -> io::Result<()> {
+        let mut end = self.length;
+        loop {
+            let start = end.saturating_sub(AHEAD);
+            let bytes = self.read(start..end)?;
+            match bytes.iter().rposition(|&byte| byte != 0) {
+                Some(last) => {
+                    end = start + last as u64 + 1;
+                    break;
+                }
+                None if start == 0 => return Ok(()),
+                None => end = start,
+            }
+        }
+        if self.length - end >= MANY_ZEROS {
+            self.length = end;
+        }
+        Ok(())
+    }
+
     pub(super) fn length(&self) -> u64 {
         self.length
     }
@@ -66,6 +88,8 @@ pub(super) struct Window<'s> {
 }
 
 const AHEAD: u64 = 1 << 16;
+/// No log ends with so many zeros.
+const MANY_ZEROS: u64 = 256;
 
 impl<'s> Window<'s> {
     pub(super) fn new(source: &'s Source) -> Self {

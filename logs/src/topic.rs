@@ -9,6 +9,7 @@ use super::{
     container::Record,
     decode::{DecodeError, decode},
     definition::{Definition, DefinitionError, Dialect, short_name},
+    messages::published_schema,
     value::Value,
 };
 
@@ -143,6 +144,11 @@ fn defined(
     name: &str,
     text: &str,
 ) -> (Encoding, Result<Definition, Undecodable>) {
+    if messages == "cdr" && text.trim().is_empty() {
+        let known = published_schema(name).ok_or(Undecodable::NoSchema);
+        let definition = known.and_then(|text| Ok(Definition::read(Dialect::Ros2, name, &text)?));
+        return (Encoding::Cdr, definition);
+    }
     let (encoding, dialect) = match (&*messages, &*schema) {
         ("ros1", "ros1msg") => (Encoding::Ros1, Dialect::Ros1),
         ("cdr", "ros2msg") => (Encoding::Cdr, Dialect::Ros2),

@@ -95,7 +95,54 @@ impl OpenLog {
         if self.options.topics.is_none() {
             TopicMap::from_log(&self.log).map_err(|error| CliError::in_file(path, error))?;
         }
-        Err(CliError::in_file(path, ExtractError::NothingMapped))
+        let cause = format!("{}. {}", ExtractError::NothingMapped, self.contents());
+        Err(CliError::in_file(path, cause))
+    }
+
+    /// Why events cannot be derived from a source: what is missing, what the log has, and what to do.
+    pub(super) fn lacks(&self, source: Evidence) -> String {
+        let is_missing = |role: &&Role| self.topics.carrier(**role).is_none();
+        let missing = source.needs().iter().filter(is_missing).map(|role| role.name());
+        let missing: Vec<_> = missing.collect();
+        let needs: Vec<_> = source.needs().iter().map(|role| role.name()).collect();
+        let ambiguous = match TopicMap::from_log(&self.log) {
+            Err(error) if self.options.topics.is_none() => format!("{error}. "),
+            _ => String::new(),
+        };
+        format!(
+            "this needs {}, and {} is missing. {ambiguous}{}",
+            needs.join(" and "),
+            missing.join(" and "),
+            self.contents()
+        )
+    }
+
+    /// What the log has, and how to state what its topics carry.
+    fn contents(&self) -> String {
+        const SHOWN: usize = 8;
+        let role_of = |name: &str| {
+            let mut roles = self.topics.carriers().filter(|(_, carrier)| carrier.topic == name);
+            roles.next().map_or(String::new(), |(role, _)| format!("{}: ", role.name()))
+        };
+        let with_messages = self.log.topics().iter().filter(|topic| topic.messages > 0);
+        let mut topics: Vec<_> = with_messages
+            .map(|topic| format!("{}{} ({})", role_of(&topic.name), topic.name, topic.type_name))
+            .map(|text| text.escape_debug().to_string())
+            .collect();
+        if topics.len() > SHOWN {
+            topics.truncate(SHOWN);
+            topics.push("...".to_owned());
+        }
+        if topics.is_empty() {
+            topics.push("no messages that are read".to_owned());
+        }
+        let skipped = self.log.skipped();
+        let skipped = skipped.map_or(String::new(), |skipped| format!("; other {skipped}"));
+        format!(
+            "The log has {}{skipped}. A topics file (--topics) states what a topic carries; `toposlam info \
+             --write-topics` writes one",
+            topics.join(", ")
+        )
     }
 
     /// Whether the log has one percept and no doors: then its robot did not move.

@@ -188,6 +188,13 @@ fn read_record(
     let length = body.end - body.start;
     let op = header.op().ok_or(LogErrorKind::Malformed("its type is missing"))?;
     match op {
+        HEADER => match header.get("encryptor").map(String::from_utf8_lossy) {
+            Some(name) if !name.is_empty() && !name.ends_with("NoEncryptor") => {
+                let name = name.escape_debug().to_string();
+                return Err(LogErrorKind::Encrypted(name));
+            }
+            _ => {}
+        },
         MESSAGE => {
             let message = message(header).map_err(LogErrorKind::Malformed)?;
             scan.add_loose(at..body.end, Some(message));

@@ -6,7 +6,7 @@ use crc32fast::Hasher;
 
 use super::{
     Failure,
-    mcap::{DATA_END, FOOTER, MAGIC, STATISTICS, record_at},
+    mcap::{CHUNK, DATA_END, FOOTER, MAGIC, STATISTICS, record_at},
     u32_at, u64_at,
 };
 use crate::{
@@ -14,6 +14,7 @@ use crate::{
     source::{Source, Window},
 };
 
+const CHUNK_INDEX: u8 = 8;
 const ATTACHMENT: u8 = 9;
 
 #[derive(Default)]
@@ -28,6 +29,9 @@ pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
     let mut window = Window::new(source);
     let mut at = MAGIC.len() as u64;
     let mut data_end = None;
+    let mut chunks = Vec::new();
+    // Where the index begins, and the chunks that it lists.
+    let mut index: Option<(u64, Vec<u64>)> = None;
     while let Some((op, Range { start: content, end })) = record_at(&mut window, at)? {
         let length = end - content;
         match op {
@@ -41,6 +45,11 @@ pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
                 let value = window.u32(content)?.unwrap_or_default();
                 found.add(at, "data section", 0..at, value);
                 data_end = Some(end);
+            }
+            CHUNK => chunks.push(at),
+            CHUNK_INDEX if length >= 24 => {
+                let place = window.get(content, 24)?.and_then(|bytes| u64_at(bytes, 16));
+                index.get_or_insert((at, Vec::new())).1.extend(place);
             }
             STATISTICS if length >= 8 => {
                 let count = window.get(content, 8)?.and_then(|bytes| u64_at(bytes, 0));
@@ -63,6 +72,15 @@ pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
             _ => {}
         }
         at = end;
+    }
+    if let Some((at, mut listed)) = index {
+        listed.sort_unstable();
+        if listed != chunks {
+            listed.dedup();
+            let right = listed.iter().filter(|place| chunks.binary_search(place).is_ok());
+            let cause = LogErrorKind::ChunkIndex { listed: right.count(), all: chunks.len() };
+            found.damage.push((cause, at));
+        }
     }
     if data_end.is_none() {
         let missing = "no record before it ends the data section";

@@ -73,9 +73,9 @@ impl ConformArguments {
     fn evidence(&self, path: &Path, opened: &OpenLog) -> Result<Evidence, CliError> {
         match self.events {
             Some(source) if source.is_in(&opened.topics) => Ok(source),
-            Some(_) => {
-                let cause = "the log does not have what this needs";
-                Err(CliError::at("--events", format!("{cause} ({})", path.display())))
+            Some(source) => {
+                let cause = format!("{}: {}", path.display(), opened.lacks(source));
+                Err(CliError::at(format!("--events {}", source.option()), cause))
             }
             None => opened.evidence(path),
         }
