@@ -7,7 +7,10 @@ use serde::Serialize;
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use toposlam_vision::laser::scan::Scan;
 
-use super::events::EventSource;
+use super::{
+    events::EventSource,
+    message_clock::{MANY, PAUSE},
+};
 
 /// A scan, and the odometry at its time.
 #[derive(Clone, Debug)]
@@ -25,11 +28,12 @@ const GAP: u64 = 1_000_000_000;
 const HISTORY: u64 = 5_000_000_000;
 /// Nearly every message is recorded a little late, in nanoseconds.
 const LATENCY: u64 = 100_000_000;
-/// A clock that goes back by more than this, in nanoseconds, was set.
+/// Messages are at most so late that later ones come before them, in nanoseconds. A clock that goes back by more
+/// was set.
 const LATE: u64 = 1_000_000_000;
 /// More scans do not wait for the first odometry.
 const WAITING: usize = 50;
-/// More scans do not wait.
+/// More scans do not wait, and more odometry is not kept.
 const MOST_WAITING: usize = 2000;
 
 /// The odometry of the last seconds, and scans that wait for the next one.
@@ -39,8 +43,10 @@ pub(super) struct ScanOdometry {
     history: VecDeque<(u64, Odometry)>,
     /// Whether odometry came before that in the history.
     has_earlier: bool,
-    /// The stamp of the last odometry in the log.
+    /// The stamp of the last odometry in the log that is not off the clock.
     last: Option<u64>,
+    /// The last odometry in the log, if its stamps are far from those before.
+    off_clock: Vec<(u64, Odometry)>,
     /// In the order of their stamps. Without one, a scan has another clock than the odometry.
     waiting: VecDeque<(Option<u64>, PlacedScan)>,
     /// The number of scans that waited in vain.
@@ -78,14 +84,21 @@ impl ScanOdometry {
     }
 
     fn add_odometry(&mut self, time: u64, odometry: Odometry) -> Vec<PlacedScan> {
-        let mut placed = Vec::new();
-        if self.last.replace(time).is_some_and(|last| time.saturating_add(LATE) < last) {
-            // The clock was set.
-            self.last_scan = 0;
-            placed.extend(self.waiting.drain(..).map(|(_, scan)| scan));
-            self.has_earlier = true;
-            self.history.clear();
+        let last = self.last.unwrap_or(time);
+        if time.saturating_add(LATE) < last || time > last.saturating_add(PAUSE) {
+            // A wrong stamp, unless there are many: then the clock was set.
+            self.off_clock.push((time, odometry));
+            if self.off_clock.len() < MANY {
+                return Vec::new();
+            }
+            self.history = std::mem::take(&mut self.off_clock).into();
+            self.history.make_contiguous().sort_by_key(|(time, _)| *time);
+            (self.last, self.has_earlier, self.last_scan) = (Some(time), true, 0);
+            return self.waiting.drain(..).map(|(_, scan)| scan).collect();
         }
+        self.off_clock.clear();
+        self.last = Some(time);
+        let mut placed = Vec::new();
         self.counts.late_odometry += u64::from(is_late(time, self.last_scan));
         let place = self.history.partition_point(|(other, _)| *other <= time);
         self.history.insert(place, (time, odometry));
@@ -98,8 +111,9 @@ impl ScanOdometry {
         }
         placed.extend(self.placed());
         let newest = self.newest().unwrap_or(time);
-        while self.history.len() > 2
-            && self.history.front().is_some_and(|(time, _)| time.saturating_add(HISTORY) < newest)
+        let is_old = |(time, _): &(u64, Odometry)| time.saturating_add(HISTORY) < newest;
+        while self.history.len() > MOST_WAITING
+            || self.history.len() > 2 && self.history.front().is_some_and(is_old)
         {
             self.has_earlier = true;
             self.history.pop_front();
@@ -109,6 +123,10 @@ impl ScanOdometry {
 
     fn add_scan(&mut self, scan: PlacedScan) -> Vec<PlacedScan> {
         let time = scan.stamp;
+        if let Some((_, odometry)) = self.history.iter().rfind(|(other, _)| *other == time) {
+            self.last_scan = self.last_scan.max(time);
+            return vec![PlacedScan { odometry: *odometry, ..scan }];
+        }
         let newest = self.newest();
         self.last_scan = self.last_scan.max(time);
         if newest.is_some_and(|newest| time.saturating_add(HISTORY) < newest) {
@@ -135,11 +153,12 @@ impl ScanOdometry {
         placed
     }
 
-    /// The waiting scans up to the newest odometry, with the odometry at their times.
+    /// The waiting scans for which no more odometry is expected, with the odometry at their times.
     fn placed(&mut self) -> Vec<PlacedScan> {
         let Some(newest) = self.newest() else { return Vec::new() };
-        let is_known =
-            |(time, _): &(Option<u64>, PlacedScan)| time.is_none_or(|time| time <= newest);
+        let is_known = |(time, _): &(Option<u64>, PlacedScan)| {
+            time.is_none_or(|time| time.saturating_add(LATE) < newest)
+        };
         let known = self.waiting.iter().take_while(|waiting| is_known(waiting)).count();
         let known: Vec<_> = self.waiting.drain(..known).collect();
         let place = |(time, scan): (Option<u64>, PlacedScan)| {
@@ -180,13 +199,14 @@ impl ScanOdometry {
 
     /// The scans that still wait, those after the last odometry among them. `None` if there was no odometry.
     pub(super) fn finish(self) -> Option<impl Iterator<Item = PlacedScan>> {
-        let last = self.history.back().map(|(_, last)| *last)?;
-        let place = move |(time, scan): (Option<u64>, PlacedScan)| {
-            let odometry = if time.is_some() { last } else { scan.odometry };
-            PlacedScan { odometry, ..scan }
+        self.history.back()?;
+        let place = |(time, scan): &(Option<u64>, PlacedScan)| {
+            let odometry = time.and_then(|time| self.at(time)).unwrap_or(scan.odometry);
+            PlacedScan { odometry, ..scan.clone() }
         };
+        let placed: Vec<_> = self.waiting.iter().map(place).collect();
         let mut order = self.order;
-        let placed = order.add(self.waiting.into_iter().map(place).collect());
+        let placed = order.add(placed);
         Some(placed.into_iter().chain(order.waiting))
     }
 }
@@ -282,9 +302,11 @@ mod tests {
             let mut placing = ScanOdometry::default();
             assert!(placing.add_odometry(10 * SECOND, at(1.0)).is_empty());
             assert!(placing.add_scan(scan(time)).is_empty());
-            assert_eq!(places(&placing.add_odometry(next, at(2.0))), [expected]);
+            let mut placed = placing.add_odometry(next, at(2.0));
             // A scan with the time of the last reading does not wait.
             assert_eq!(places(&placing.add_scan(scan(next))), [2.0]);
+            placed.extend(placing.finish().unwrap());
+            assert_eq!(places(&placed), [expected]);
         }
     }
 
@@ -339,19 +361,28 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_was_set_begins_again() {
+    fn odometry_with_a_wrong_stamp_is_skipped_and_a_clock_that_was_set_begins_again() {
         let mut placing = ScanOdometry::default();
         placing.add_odometry(100 * SECOND, at(1.0));
-        assert!(placing.add_scan(scan(100 * SECOND + 1)).is_empty());
+        assert!(placing.add_scan(scan(100 * SECOND + 5)).is_empty());
+        for wrong in [50, 9_000_000] {
+            assert!(placing.add_odometry(wrong * SECOND, at(9.0)).is_empty());
+        }
+        assert!(placing.add_odometry(100 * SECOND + 10, at(2.0)).is_empty());
+        assert_eq!(places(&placing.add_odometry(102 * SECOND, at(3.0))), [1.5]);
+        assert!(placing.add_scan(scan(101 * SECOND)).is_empty());
+        for step in 1..MANY as u64 {
+            assert!(placing.add_odometry(step * SECOND / 2, at(step as f64)).is_empty());
+        }
         // What waited is where the log has it, and what comes is by the new clock.
-        assert_eq!(places(&placing.add_odometry(50 * SECOND, at(2.0))), [-1.0]);
-        assert!(placing.add_scan(scan(50 * SECOND + SECOND / 4)).is_empty());
-        assert_eq!(places(&placing.add_odometry(50 * SECOND + SECOND / 2, at(3.0))), [2.5]);
+        assert_eq!(places(&placing.add_odometry(5 * SECOND, at(10.0))), [-1.0]);
+        assert!(placing.add_scan(scan(5 * SECOND - SECOND / 4)).is_empty());
+        assert_eq!(places(&placing.add_odometry(6 * SECOND, at(11.0))), [9.5]);
         // Scans of another clock do not wait for long.
         for _ in 0..3 {
             assert!(placing.add_scan(scan(9000 * SECOND)).is_empty());
         }
-        assert_eq!(places(&placing.add_odometry(51 * SECOND, at(4.0))), [-1.0; 3]);
+        assert_eq!(places(&placing.add_odometry(7 * SECOND, at(4.0))), [-1.0; 3]);
         assert_eq!(placing.counts().other_clock, 3);
     }
 

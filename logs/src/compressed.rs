@@ -40,6 +40,11 @@ impl FileCompression {
     }
 }
 
+/// A log does not become larger by a greater factor, ...
+const MOST_GROWTH: u64 = 200;
+/// ... or it is not larger than this, in bytes.
+const ALWAYS: u64 = 256 << 20;
+
 /// A compressed file, as the file that it decompresses to.
 pub(super) struct Decompressed {
     file: SharedFile,
@@ -52,16 +57,27 @@ pub(super) struct Decompressed {
 
 impl Decompressed {
     /// Decompresses a file once, for its length. The truth is whether its end is missing.
+    ///
+    /// # Errors
+    /// Returns an error if it cannot be read, or if it is much larger than any log would be.
     pub(super) fn new(
         storage: Box<dyn Storage>,
         compression: FileCompression,
     ) -> io::Result<(Self, bool)> {
         let file = SharedFile { storage: Arc::new(Mutex::new(storage)), at: 0, ended: false };
+        let size = file.size()?;
+        let most = size.saturating_mul(MOST_GROWTH).max(ALWAYS);
         let decoder = decoder(compression, file.clone());
         let mut opened =
             Self { file, compression, decoder, decoded: 0, position: 0, length: u64::MAX };
-        let ended = io::copy(&mut opened, &mut io::sink());
+        let ended = io::copy(&mut (&mut opened).take(most.saturating_add(1)), &mut io::sink());
         opened.length = opened.decoded;
+        if opened.length > most {
+            let cause = format!(
+                "{size} compressed bytes become more than {most}, {MOST_GROWTH} times as many"
+            );
+            return Err(io::Error::other(cause));
+        }
         match ended {
             Ok(_) => Ok((opened, false)),
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok((opened, true)),
@@ -121,6 +137,11 @@ struct SharedFile {
 }
 
 impl SharedFile {
+    fn size(&self) -> io::Result<u64> {
+        let mut storage = self.storage.lock().unwrap_or_else(PoisonError::into_inner);
+        storage.seek(SeekFrom::End(0))
+    }
+
     fn goes_on(&self) -> io::Result<bool> {
         let mut ahead = Self { at: self.at, ..self.clone() };
         Ok(ahead.read(&mut [0])? > 0)

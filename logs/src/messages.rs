@@ -15,7 +15,6 @@ macro_rules! own {
         $($field:ident: $type:ty $(= $older:expr)?,)*
     })*) => {
         /// The types and their definitions, without those that they use.
-        #[cfg(feature = "sqlite")]
         pub(super) const OWN: &[(&str, &str)] = &[$(($name::TYPE, $name::DEFINITION),)*];
 
         $(

@@ -57,14 +57,14 @@ impl<W: Write> Recorder<W> {
         Ok(Self { out, error: None, camera, now: 0, twist: Twist::default() })
     }
 
-    /// Closes the log.
+    /// Closes the log, and returns what it was written to.
     ///
     /// # Errors
     /// Returns an error if the log could not be written, now or before.
-    pub fn finish(self) -> Result<(), LogWriteError> {
+    pub fn finish(self) -> Result<W, LogWriteError> {
         match self.error {
             Some(error) => Err(error),
-            None => self.out.finish().map(|_| ()),
+            None => self.out.finish(),
         }
     }
 

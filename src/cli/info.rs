@@ -23,7 +23,7 @@ use super::{
     outcome::SeveralInputs,
     output,
     progress::Progress,
-    text::{counted, duration_text, grouped, moment, print_hanging, print_rows},
+    text::{counted, duration_text, grouped, moment, print_hanging, print_rows, printable},
 };
 
 /// Show the contents of logs: times, completeness and topics
@@ -121,7 +121,7 @@ impl InfoArguments {
                     let line = json!({ "log": log, "verification": verification });
                     print_line(out, "damaged-log", &line)?;
                 } else {
-                    writeln!(out, "{log}: damaged, and not read further")?;
+                    writeln!(out, "{}: damaged, and not read further", printable(&log))?;
                     print_damage(out, &found)?;
                 }
                 return Ok((false, Outcome::Violated));
@@ -295,7 +295,8 @@ impl ListedLog<'_> {
         let log = self.log;
         let compression =
             log.compression().map_or(String::new(), |known| format!(", {}", known.name()));
-        let (path, size) = (self.path.display(), grouped(log.size().into()));
+        let path = printable(&self.path.display().to_string());
+        let size = grouped(log.size().into());
         writeln!(out, "{path}: {}{compression}, {size} bytes", format(log)[1])?;
         if let Some(truncation) = log.truncation() {
             print_hanging(out, "", &truncation.to_string())?;

@@ -1,6 +1,6 @@
 //! The options of a robot's run, simulated or live, and its files.
 
-use std::{fs::File, path::PathBuf};
+use std::path::PathBuf;
 
 use clap::{ArgMatches, Command, FromArgMatches, Id, parser::ValueSource};
 use toposlam_logs::{messages, recorder::Recorder, world_hash, writer::LogWriteError};
@@ -108,7 +108,7 @@ impl RunOptions {
         world: Option<(&NamedWorld, Dart)>,
         seed: u64,
         sensors: Option<&(Camera, ColourModel)>,
-    ) -> Result<Option<Recorder<File>>, CliError> {
+    ) -> Result<Option<Recorder<output::GrowingFile>>, CliError> {
         let Some(path) = &self.log else { return Ok(None) };
         let known = world.map(|(world, facing)| {
             let hash = world_hash(&world.graph, facing);
@@ -135,10 +135,22 @@ impl RunOptions {
         recorder.map(Some).map_err(|error| self.unwritten(&error))
     }
 
+    /// Closes the log, which then replaces an earlier one.
+    pub(super) fn close(&self, log: Option<Recorder<output::GrowingFile>>) -> Result<(), CliError> {
+        let Some(log) = log else { return Ok(()) };
+        log.finish().map_err(|error| self.unwritten(&error))?.complete()
+    }
+
     /// The failure if the log cannot be written.
-    pub(super) fn unwritten(&self, error: &LogWriteError) -> CliError {
+    fn unwritten(&self, error: &LogWriteError) -> CliError {
         let path = self.log.clone().unwrap_or_default();
-        CliError::in_file(&path, format!("cannot be written: {error}"))
+        let partial = output::partial_path(&path);
+        let kept = if partial.is_file() {
+            format!("; the earlier log is kept, and what was written is {}", partial.display())
+        } else {
+            String::new()
+        };
+        CliError::in_file(&path, format!("cannot be written: {error}{kept}"))
     }
 
     /// Writes the map, if it is wanted and complete.

@@ -6,7 +6,6 @@ use std::{io::Write, path::PathBuf, sync::Arc, time::Instant};
 
 use toposlam_logs::{
     record::{RobotSensor, StoppedBy},
-    recorder::Recorder,
     world_hash,
 };
 use toposlam_model::{
@@ -272,10 +271,10 @@ impl SimulateArguments {
         let mut recording = Recording::default();
         let observer = (&mut log, (&mut recording, &mut capture));
         let run = run(&plan, facing, robot, sensor.clone(), observer, &settings);
-        let logged = log.map_or(Ok(()), Recorder::finish);
+        let logged = self.options.close(log);
         let mut page_data = capture.page_data(&world, &plan, facing, &run);
         capture.finish()?;
-        logged.map_err(|error| self.options.unwritten(&error))?;
+        logged?;
         let computed = Instant::now();
         // A run that ended early ends early again.
         let _ = offline(&recording, sensor, StoppedBy(&StopSignal), &settings);

@@ -3,6 +3,7 @@
 
 use std::{
     ffi::OsString,
+    fmt::Display,
     fs,
     io::{self, Cursor, Read},
     path::{Path, PathBuf},
@@ -20,14 +21,14 @@ use toposlam_vision::{
     colour::ColourModel,
 };
 
-use super::{CliError, files::files};
+use super::{CliError, files::files, foreign_format};
 
 /// Reads the world of a world file (TOML or JSON) or of a plantri file with one world. If the file gives
 /// no name, the world gets the name of the file.
 pub fn read_world(path: &Path) -> Result<NamedWorld, CliError> {
     let bytes = read_at_most(path, MOST_WORLDS)?;
     let mut world = match plantri::PlantriCode::of_file(path, &bytes) {
-        None => world_file::read(&bytes).map_err(|error| CliError::in_file(path, error))?,
+        None => world_file::read(&bytes).map_err(|error| not_a_world(path, &bytes, error))?,
         Some(code) => match <[_; 1]>::try_from(read_plantri(path, &bytes, code)?) {
             Ok([graph]) => NamedWorld::numbered("", "", graph, None),
             Err(graphs) => {
@@ -65,7 +66,18 @@ pub fn read_camera(path: &Path) -> Result<Camera, CliError> {
         files().read(&path).map_err(io::Error::other)?;
         read_whole(fs::File::open(&path)?, 0, MOST)
     };
-    calibration::read(&read(path)?, beside).map_err(|error| CliError::in_file(path, error))
+    let bytes = read(path)?;
+    calibration::read(&bytes, beside).map_err(|error| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let other = foreign_format::calibration_of_other(&name, &bytes);
+        CliError::in_file(path, other.unwrap_or_else(|| error.to_string()))
+    })
+}
+
+/// The failure for a file that is not a world, which may be one of another program.
+fn not_a_world(path: &Path, bytes: &[u8], error: impl Display) -> CliError {
+    let other = foreign_format::world_of_other(bytes);
+    CliError::in_file(path, other.unwrap_or_else(|| error.to_string()))
 }
 
 /// The start from the command line, or else from the world file, or else the first dart.
@@ -82,7 +94,7 @@ pub fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, CliError> {
     if let Some(code) = plantri::PlantriCode::of_file(path, &bytes) {
         return read_plantri(path, &bytes, code);
     }
-    let world = world_file::read(&bytes).map_err(|error| CliError::in_file(path, error))?;
+    let world = world_file::read(&bytes).map_err(|error| not_a_world(path, &bytes, error))?;
     Ok(vec![world.graph])
 }
 

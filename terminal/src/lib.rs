@@ -14,6 +14,7 @@ pub mod children;
 pub mod edge_range;
 pub mod exit_codes;
 pub mod files;
+mod foreign_format;
 pub mod input;
 pub mod json;
 pub mod method_options;

@@ -4,7 +4,7 @@
 use std::{
     ffi::{OsStr, OsString},
     fs,
-    io::{self, Read},
+    io::{self, Read, Write},
     path::{Path, PathBuf},
     process,
     sync::{Mutex, PoisonError},
@@ -52,11 +52,49 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     })
 }
 
-/// Creates a file that grows under its own name. The beginning of a log is useful even if its writer was
-/// killed.
-pub fn create_growing(path: &Path) -> Result<fs::File, CliError> {
+/// A file that grows. The beginning of a log is useful even if its writer was killed.
+#[derive(Debug)]
+pub struct GrowingFile {
+    file: fs::File,
+    path: PathBuf,
+    /// The name until it is complete, if it replaces a file.
+    partial: Option<PathBuf>,
+}
+
+/// Creates a file that grows: under its own name, or beside the file that it replaces when it is complete.
+pub fn create_growing(path: &Path) -> Result<GrowingFile, CliError> {
     files().write(path, FileUse::Growing).map_err(CliError::Input)?;
-    fs::File::create(path).map_err(|error| not_writable(path, &error))
+    let partial = path.is_file().then(|| partial_path(path));
+    let file = fs::File::create(partial.as_deref().unwrap_or(path));
+    let file = file.map_err(|error| not_writable(path, &error))?;
+    Ok(GrowingFile { file, path: path.to_owned(), partial })
+}
+
+/// The name of a growing file that replaces another one, until it is complete: `run.partial.mcap` for `run.mcap`.
+pub fn partial_path(path: &Path) -> PathBuf {
+    let ending = path.extension().unwrap_or_default();
+    path.with_extension([OsStr::new("partial"), ending].join(OsStr::new(".")))
+}
+
+impl GrowingFile {
+    /// Gives the complete file its name.
+    ///
+    /// # Errors
+    /// Returns an error if the file that it replaces cannot be replaced.
+    pub fn complete(self) -> Result<(), CliError> {
+        let Some(partial) = self.partial else { return Ok(()) };
+        fs::rename(partial, &self.path).map_err(|error| not_writable(&self.path, &error))
+    }
+}
+
+impl Write for GrowingFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
 }
 
 /// Opens a file to append to, or creates it, and returns what it contains. It is locked until it is closed.

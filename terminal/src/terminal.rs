@@ -18,6 +18,8 @@ use clap::builder::Styles;
 
 use toposlam_draw::text::{readable, wrapped};
 
+use super::text::printable;
+
 /// Options of every verb.
 #[derive(clap::Args)]
 pub struct TerminalOptions {
@@ -45,7 +47,7 @@ pub fn has_colors() -> bool {
 /// Prints a remark on standard error, unless `--quiet` is given.
 pub fn remark(text: impl Display) {
     if !is_quiet() {
-        print_message(&message_lines(*WIDTH, &text.to_string()));
+        print_message(&message_lines(*WIDTH, &printable(&text.to_string())));
     }
 }
 
@@ -53,7 +55,7 @@ pub fn error(message: &str) {
     const LABEL: &str = "error:";
     let style = Styles::styled();
     let style = style.get_error();
-    let lines = message_lines(*WIDTH, &format!("{LABEL} {message}"));
+    let lines = message_lines(*WIDTH, &format!("{LABEL} {}", printable(message)));
     print_message(&lines.replacen(LABEL, &format!("{style}{LABEL}{style:#}"), 1));
 }
 

@@ -9,6 +9,16 @@ pub use toposlam_draw::{
     text::{WIDTH, counted, print_hanging, print_indented, print_paragraph, vertices, wrapped},
 };
 
+/// A text as it can be printed: a name of a file may have characters that control a terminal.
+pub fn printable(text: &str) -> String {
+    let is_kept = |character: char| character == '\n' || !character.is_control();
+    let shown = |character: char| match is_kept(character) {
+        true => character.to_string(),
+        false => character.escape_debug().to_string(),
+    };
+    if text.chars().all(is_kept) { text.to_owned() } else { text.chars().map(shown).collect() }
+}
+
 /// The three finite numbers in a text, with commas between them.
 pub fn three_numbers(text: &str) -> Option<[f64; 3]> {
     let number = |part: &str| part.trim().parse().ok().filter(|number: &f64| number.is_finite());

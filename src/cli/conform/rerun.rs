@@ -26,7 +26,7 @@ use crate::cli::{
     json::{TruncatedLine, print_line},
     open_log::OpenLog,
     output,
-    text::{counted, grouped, print_hanging, since_start, tenths, vertices},
+    text::{counted, grouped, print_hanging, printable, since_start, tenths, vertices},
 };
 
 impl ConformArguments {
@@ -115,7 +115,7 @@ fn print(out: &mut dyn Write, log: &Path, replay: &Replay, seconds: f64) -> Resu
     let map = replay.mapping.map();
     let whole = if map.complete().is_some() { "complete" } else { "incomplete" };
     let comparison = &replay.comparison;
-    writeln!(out, "{}: the map is {whole}", log.display())?;
+    writeln!(out, "{}: the map is {whole}", printable(&log.display().to_string()))?;
     let (frame, frames) = match replay.frames {
         Role::Image => ("image", "images"),
         Role::Scan => ("scan", "scans"),

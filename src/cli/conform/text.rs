@@ -6,7 +6,7 @@ use toposlam_conform::{
     ConformReports, DivergenceReport, LogReport, ReportedEvent, ToleratedQuirk, words,
 };
 
-use crate::cli::text::{counted, grouped, print_command, print_hanging, since_start};
+use crate::cli::text::{counted, grouped, print_command, print_hanging, printable, since_start};
 
 /// The number of steps shown before a divergence.
 const BEFORE: usize = 6;
@@ -16,7 +16,9 @@ const SHORT: usize = 12;
 /// Prints the report of a log.
 pub(super) fn print(out: &mut dyn Write, report: &LogReport) -> io::Result<()> {
     match &report.divergence {
-        None => writeln!(out, "{}: {}", report.log, words::verdict(report.verdict))?,
+        None => {
+            writeln!(out, "{}: {}", printable(&report.log), words::verdict(report.verdict))?;
+        }
         Some(divergence) => print_divergence(out, report, divergence)?,
     }
     for remark in words::remarks(report) {
@@ -51,7 +53,8 @@ fn print_divergence(
     let DivergenceReport { event, time, message, fault, cause, .. } = divergence;
     let [number, of] = [*event, report.events.len()].map(|number| grouped(number as u128));
     let time = time.map_or(String::new(), |time| format!(", at {}", since_start(time)));
-    writeln!(out, "{}: diverges at event {number} of {of}{time}: {fault}", report.log)?;
+    let log = printable(&report.log);
+    writeln!(out, "{log}: diverges at event {number} of {of}{time}: {fault}")?;
     print_hanging(out, "  ", &format!("{}: {cause}", words::found(divergence)))?;
     if let Some(message) = message {
         writeln!(out, "  {}", words::message_place(message))?;

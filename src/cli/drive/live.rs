@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use toposlam_logs::{record::RobotSensor, recorder::Recorder};
+use toposlam_logs::record::RobotSensor;
 use toposlam_model::mapping::{FACING, MappingError};
 use toposlam_robot::{
     explorer::{ExplorerError, RobotExplorer},
@@ -57,12 +57,12 @@ impl DriveArguments {
         let (mapping, mapped) = explorer.map(&settings);
         let moves = explorer.moves();
         let (robot, _) = explorer.into_parts();
-        let logged = log.map_or(Ok(()), Recorder::finish);
+        let logged = self.options.close(log);
         let (seconds, frames) = (robot.odometry().time, robot.frames());
         // The robot stops before anything else.
         drop(robot);
         capture.finish()?;
-        logged.map_err(|error| self.options.unwritten(&error))?;
+        logged?;
         let run = RobotRun {
             method: settings.method,
             mapping: &mapping,
