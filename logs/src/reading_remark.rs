@@ -8,7 +8,7 @@ use toposlam_model::counts::grouped;
 
 use super::{
     error::{LogError, LogErrorKind},
-    scan_convention::NoReturnSign,
+    no_return::NoReturnSign,
 };
 
 /// What was repaired in the messages of a log, and what was skipped.

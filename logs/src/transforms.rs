@@ -11,8 +11,7 @@ use toposlam_model::driving::odometry::Odometry;
 use toposlam_vision::geometry::angle;
 
 use super::{
-    error::LogError, messages::Stamp, reader::Log, standard::Quaternion, topic::Topic,
-    topic_map::ScannerFrames, value::Value,
+    error::LogError, messages::Stamp, reader::Log, standard::Quaternion, topic::Topic, value::Value,
 };
 
 pub(super) const TYPE: &str = "tf2_msgs/TFMessage";
@@ -107,6 +106,15 @@ fn is_floor(frame: &str) -> bool {
 /// A pose on the floor, as odometry.
 fn to_floor(pose: &Isometry3<f64>) -> Odometry {
     Odometry { position: pose.translation.vector.xy().into(), heading: heading(pose) }
+}
+
+/// What a topics file states of the scanner, and transforms do not.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ScannerFrames {
+    /// Where the scanner is on the robot: metres ahead and to the left, and radians counter-clockwise.
+    pub mount: Option<[f64; 3]>,
+    /// The name of the frame of the robot.
+    pub base_frame: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

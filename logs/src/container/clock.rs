@@ -87,7 +87,8 @@ impl Clock {
             self.latest = self.nanoseconds(seconds).unwrap_or_default();
             return LineTime::Regular;
         }
-        let pause = if self.is_free { u64::MAX } else { PAUSE + (2e9 * resolution) as u64 };
+        let pause =
+            if self.is_free { u64::MAX } else { PAUSE.saturating_add((2e9 * resolution) as u64) };
         let found = match self.nanoseconds(seconds) {
             Some(time) if time < self.latest => LineTime::Back,
             None if seconds < 0.0 => LineTime::Back,

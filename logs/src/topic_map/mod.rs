@@ -18,6 +18,8 @@ pub(super) use bound::Carried;
 pub(super) use role::{APRIL_TAGS, DETECTIONS};
 pub use role::{AngleUnit, LengthUnit, MessagePart, Role};
 
+pub use crate::transforms::ScannerFrames;
+
 use std::{
     collections::BTreeMap,
     fmt::{self, Write},
@@ -32,15 +34,6 @@ pub struct TopicMap {
     carriers: BTreeMap<Role, Carrier>,
     assumed: Option<MarkerPlace>,
     scanner: ScannerFrames,
-}
-
-/// What a topics file states of the scanner, and transforms do not.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ScannerFrames {
-    /// Where the scanner is on the robot: metres ahead and to the left, and radians counter-clockwise.
-    pub mount: Option<[f64; 3]>,
-    /// The name of the frame of the robot.
-    pub base_frame: Option<String>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
