@@ -101,7 +101,7 @@ impl Visitor<'_> for WholeVisitor {
 
     fn visit_f64<E: Error>(self, number: f64) -> Result<Whole, E> {
         let whole = whole_of(number).and_then(|number| u32::try_from(number).ok());
-        whole.map(Whole).ok_or_else(|| E::invalid_value(Unexpected::Float(number), &self))
+        whole.map(Whole).ok_or_else(|| E::invalid_type(Unexpected::Float(number), &self))
     }
 }
 
@@ -396,7 +396,7 @@ degree,door,stamp | 2,1,9e99 | its stamp is 9e99; seconds are expected
 degree,door | 2 | it has 1 cells, and the header 2
 degree,door | 2,x | its door is "x"
 degree,door | 2,1.5 | its door is "1.5"
- | {"degree":2.5} | invalid value: floating point `2.5`, expected u32
+ | {"degree":2.5} | invalid type: floating point `2.5`, expected u32
  | {"degree":2,"turned_back":1} | invalid type: integer `1`, expected a boolean"#;
 
     #[test]

@@ -34,7 +34,7 @@ const SHARE: usize = 5;
 const SEEN: usize = 500;
 
 /// The readings of scans by their range.
-pub(super) struct Histogram {
+pub(super) struct RangeHistogram {
     all: usize,
     zeros: usize,
     not_numbers: usize,
@@ -45,14 +45,14 @@ pub(super) struct Histogram {
     bins: Vec<usize>,
 }
 
-impl Default for Histogram {
+impl Default for RangeHistogram {
     fn default() -> Self {
         let bins = vec![0; BINS];
         Self { all: 0, zeros: 0, not_numbers: 0, beyond: 0, range_max: 0.0, bins }
     }
 }
 
-impl Histogram {
+impl RangeHistogram {
     /// Adds the readings of a scan.
     pub(super) fn add(&mut self, scan: &Value<'_>) {
         let Some(range_max) = scan.get::<f64>("range_max") else { return };
@@ -107,7 +107,7 @@ mod tests {
         not_numbers: usize,
         bins: &[(usize, usize)],
     ) -> Option<NoReturnSign> {
-        let mut histogram = Histogram {
+        let mut histogram = RangeHistogram {
             all: 10_000,
             zeros,
             not_numbers,

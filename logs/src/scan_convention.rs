@@ -3,7 +3,7 @@
 use std::sync::PoisonError;
 
 use super::{
-    no_return::{Histogram, NoReturnSign},
+    no_return::{NoReturnSign, RangeHistogram},
     reader::Log,
     reading_remark::ReadingRemark,
 };
@@ -22,7 +22,7 @@ fn surveyed(log: &Log, index: usize) -> Option<NoReturnSign> {
     if topic.short_type() != "sensor_msgs/LaserScan" {
         return None;
     }
-    let mut histogram = Histogram::default();
+    let mut histogram = RangeHistogram::default();
     for message in log.read(&[index]).take(SURVEYED).map_while(Result::ok) {
         if let Some(Ok(value)) = topic.decode(&message.bytes) {
             histogram.add(&value);

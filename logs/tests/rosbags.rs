@@ -123,6 +123,10 @@ fn a_folder_without_metadata_is_all_its_files() {
     fs::write(mcap.join("mcap.mcap"), &bytes[..bytes.len() / 2]).unwrap();
     let truncation = Log::open(&mcap).unwrap().truncation().unwrap().to_string();
     assert!(truncation.starts_with("mcap.mcap: truncated at byte "), "{truncation}");
+    for empty in ["", " \n"] {
+        fs::write(mcap.join("metadata.yaml"), empty).unwrap();
+        assert!(Log::open(&mcap).is_ok());
+    }
     fs::write(mcap.join("metadata.yaml"), "a: [1").unwrap();
     let error = |folder: &Path| Log::open(folder).map(|_| ()).unwrap_err().to_string();
     assert!(error(&mcap).starts_with("metadata.yaml: line "), "{}", error(&mcap));

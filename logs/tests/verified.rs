@@ -52,6 +52,67 @@ fn every_flipped_byte_of_an_mcap_file_is_noticed() {
     }
 }
 
+/// The places of the records of an MCAP file with an opcode.
+fn records(bytes: &[u8], wanted: u8) -> Vec<usize> {
+    let (mut at, mut found) = (8, Vec::new());
+    while at + 9 <= bytes.len() - 8 {
+        if bytes[at] == wanted {
+            found.push(at);
+        }
+        at += 9 + u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+    }
+    found
+}
+
+#[test]
+fn an_index_that_lists_few_of_the_chunks_is_noticed() {
+    let [one, two] = chunks();
+    let way = ways().into_iter().find(|way| way.summary && way.chunked).unwrap();
+    let mut whole = mcap_file(&[&one, &two], way);
+    // Without the checksum of the summary.
+    let footer = records(&whole, 2)[0];
+    whole[footer + 25..footer + 29].fill(0);
+    assert!(verified(whole.clone()).unwrap().damage.is_empty());
+    let [first, second] = records(&whole, 8)[..] else { panic!() };
+    let mut dropped = whole.clone();
+    dropped[second] = 0x80;
+    let mut same = whole;
+    same.copy_within(first + 25..first + 33, second + 25);
+    for bytes in [dropped, same] {
+        let damage = verified(bytes).unwrap().damage;
+        let expected =
+            format!("byte {first}: the index lists 1 of the 2 chunks, or some of them twice");
+        assert_eq!(damage.iter().map(ToString::to_string).collect::<Vec<_>>(), [expected]);
+    }
+}
+
+#[test]
+fn zeros_at_the_end_are_a_truncation_and_an_encrypted_bag_is_named() {
+    let [one, two] = chunks();
+    for file in files(&[&one, &two]) {
+        let mut bytes = file.bytes;
+        let half = bytes.len() / 2;
+        bytes.truncate(half);
+        bytes.extend([0; 1000]);
+        let log = Log::of_bytes(bytes).unwrap();
+        assert!(log.truncation().is_some_and(|cut| cut.offset <= half as u64), "{}", file.name);
+    }
+    let field = |text: &[u8]| [&(text.len() as u32).to_le_bytes(), text].concat();
+    let bag = |name: &str| {
+        let fields =
+            [field(b"op=\x03"), field(b"index_pos=\0\0\0\0\0\0\0\0"), field(name.as_bytes())];
+        let header = field(&fields.concat());
+        Log::of_bytes([b"#ROSBAG V2.0\n".to_vec(), header, field(&[b' '; 20])].concat())
+    };
+    assert!(bag("encryptor=rosbag/NoEncryptor").is_ok());
+    let error = bag("encryptor=rosbag/AesCbcEncryptor").err().unwrap();
+    assert_eq!(
+        error.to_string(),
+        "the bag is encrypted (rosbag/AesCbcEncryptor): decrypt it first, with `rosbag decrypt`"
+    );
+    assert!(!error.cause.is_damage());
+}
+
 /// What is compressed, if it can be decompressed.
 fn decompressed(chunk: &[u8]) -> Option<Vec<u8>> {
     let mut records = Vec::new();

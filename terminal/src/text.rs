@@ -115,6 +115,12 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_controls_a_terminal_is_shown() {
+        assert_eq!(printable("a\u{1b}[31mb\n東"), "a\\u{1b}[31mb\n東");
+        assert_eq!(printable("run.mcap"), "run.mcap");
+    }
+
+    #[test]
     fn a_column_is_as_wide_as_its_widest_text_on_a_terminal() {
         let mut out = Vec::new();
         let rows = [["東口", "x"], ["a", "y"]].map(|row| row.map(str::to_owned));
