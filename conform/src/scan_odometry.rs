@@ -325,7 +325,7 @@ mod tests {
                 ]
             })
             .collect();
-        messages.sort();
+        messages.sort_unstable();
         let mut placing = ScanOdometry::default();
         let mut placed = Vec::new();
         for (_, stamp, is_scan) in messages {

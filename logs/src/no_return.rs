@@ -1,7 +1,7 @@
 //! How scans write that there is no return. By REP 117 that is an infinite range; many drivers write a little less
 //! than the largest range, 0 or not a number.
 
-use std::fmt;
+use std::{cmp::Reverse, fmt};
 
 use super::value::Value;
 
@@ -80,7 +80,7 @@ impl RangeHistogram {
         }
         let sums: Vec<usize> = self.bins.windows(WIDTH).map(|bins| bins.iter().sum()).collect();
         let (first, most) =
-            sums.iter().copied().enumerate().max_by_key(|(at, sum)| (*sum, -(*at as i64)))?;
+            sums.iter().copied().enumerate().max_by_key(|(at, sum)| (*sum, Reverse(*at)))?;
         let others = sums.iter().enumerate().filter(|(at, _)| at.abs_diff(first) >= WIDTH);
         let of_walls = others.map(|(_, sum)| *sum).max().unwrap_or(0);
         if most >= enough && of_walls * SHARE <= most {

@@ -137,8 +137,8 @@ fn frames_are_connected_in_any_direction_and_the_robot_has_any_name() {
     let two = [ahead("hull", "base_link"), ahead("base_link", "laser")];
     near(scanner_pose("base_link", &two, hull), [1.0, 0.5, 0.0]);
     // What a topics file states.
-    let mount = "[scanner]\nmount = [-0.25, 0, 3.14]\n";
-    near(scanner_pose("base_link", &[ahead("map", "laser")], mount), [-0.25, 0.0, 3.14]);
+    let mount = "[scanner]\nmount = [-0.25, 0, 3.0]\n";
+    near(scanner_pose("base_link", &[ahead("map", "laser")], mount), [-0.25, 0.0, 3.0]);
 }
 
 #[test]

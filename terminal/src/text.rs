@@ -12,9 +12,9 @@ pub use toposlam_draw::{
 /// A text as it can be printed: a name of a file may have characters that control a terminal.
 pub fn printable(text: &str) -> String {
     let is_kept = |character: char| character == '\n' || !character.is_control();
-    let shown = |character: char| match is_kept(character) {
-        true => character.to_string(),
-        false => character.escape_debug().to_string(),
+    let shown = |character: char| {
+        let escaped = (!is_kept(character)).then(|| character.escape_debug().to_string());
+        escaped.unwrap_or_else(|| character.to_string())
     };
     if text.chars().all(is_kept) { text.to_owned() } else { text.chars().map(shown).collect() }
 }

@@ -27,9 +27,8 @@ pub(super) struct TimedLine {
 pub(crate) struct Clock {
     /// Events need not have times, and a robot may wait for days.
     is_free: bool,
-    has_begun: bool,
-    /// The latest time, in nanoseconds.
-    latest: u64,
+    /// The latest time, in nanoseconds; `None` before the first time that is not 0.
+    latest: Option<u64>,
     /// What is added to the times since the clock was set, in seconds.
     shift: f64,
     off: u32,
@@ -45,8 +44,7 @@ impl Clock {
     pub(super) fn new(format: Format) -> Self {
         Self {
             is_free: format == Format::Events,
-            has_begun: false,
-            latest: 0,
+            latest: None,
             shift: 0.0,
             off: 0,
             has_zero: false,
@@ -57,13 +55,13 @@ impl Clock {
 
     /// The time of a line in nanoseconds, which is not before that of the line before it.
     pub(super) fn tick(&mut self, line: TimedLine, counts: &mut LineTimes) -> u64 {
-        let Some(seconds) = line.time else { return self.latest };
+        let Some(seconds) = line.time else { return self.time() };
         // An editor of logs adds the corrected odometry after each scan, with time 0.
         let is_added = self.is_after_scan && !line.has_scan && !self.is_free;
         self.is_after_scan = line.has_scan;
         let found = self.advance(seconds, line.resolution, is_added);
         if is_added {
-            return self.latest;
+            return self.time();
         }
         let is_repeated = line.has_scan && self.last_scan.replace(seconds) == Some(seconds);
         let found = match found {
@@ -72,28 +70,33 @@ impl Clock {
             found => found,
         };
         counts.add(found);
-        self.latest
+        self.time()
+    }
+
+    /// The time of the last line, in nanoseconds.
+    fn time(&self) -> u64 {
+        self.latest.unwrap_or_default()
     }
 
     fn advance(&mut self, seconds: f64, resolution: f64, is_added: bool) -> LineTime {
         if !seconds.is_finite() || seconds == 0.0 && !self.is_free {
             // A log may begin at 0.
-            let is_first = !std::mem::replace(&mut self.has_zero, true) && !self.has_begun;
+            let is_first = !std::mem::replace(&mut self.has_zero, true) && self.latest.is_none();
             return if is_first && seconds == 0.0 { LineTime::Regular } else { LineTime::Missing };
         }
-        if !self.has_begun && !is_added {
-            self.has_begun = true;
+        let latest = self.time();
+        if self.latest.is_none() && !is_added {
             self.shift = if (0.0..END).contains(&seconds) { 0.0 } else { -seconds };
-            self.latest = self.nanoseconds(seconds).unwrap_or_default();
+            self.latest = Some(self.nanoseconds(seconds).unwrap_or_default());
             return LineTime::Regular;
         }
         let pause =
             if self.is_free { u64::MAX } else { PAUSE.saturating_add((2e9 * resolution) as u64) };
         let found = match self.nanoseconds(seconds) {
-            Some(time) if time < self.latest => LineTime::Back,
+            Some(time) if time < latest => LineTime::Back,
             None if seconds < 0.0 => LineTime::Back,
-            Some(time) if time - self.latest <= pause => {
-                self.latest = time;
+            Some(time) if time - latest <= pause => {
+                self.latest = Some(time);
                 self.off = 0;
                 return LineTime::Regular;
             }
@@ -103,7 +106,7 @@ impl Clock {
             self.off += 1;
         }
         if self.off >= MOST_OFF && !self.is_free {
-            self.shift = self.latest as f64 / 1e9 - seconds;
+            self.shift = latest as f64 / 1e9 - seconds;
             self.off = 0;
         }
         found
@@ -121,7 +124,8 @@ impl Clock {
 pub(super) fn resolution(word: &str) -> f64 {
     let (digits, exponent) = word.split_once(['e', 'E']).unwrap_or((word, "0"));
     let Ok(exponent) = exponent.parse::<i32>() else { return 0.0 };
-    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len()) as i32;
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let decimals = i32::try_from(decimals).unwrap_or(i32::MAX);
     let is_short = decimals == 0 && digits.len() < 6;
     match exponent {
         0 if is_short => 0.0,

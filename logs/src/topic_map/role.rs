@@ -137,12 +137,11 @@ impl Role {
             | (Self::Map, "toposlam_msgs/Map")
             | (Self::End, "toposlam_msgs/End")
             | (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image")
-            | (Self::Scan, "sensor_msgs/LaserScan")
+            | (Self::Scan, "sensor_msgs/LaserScan" | CARMEN_RAW | CARMEN_RAW_REAR)
             | (
                 Self::Scan | Self::Odometry,
                 CARMEN_FRONT | CARMEN_REAR | CARMEN_ROBOT | CARMEN_ROBOT_REAR | CARMEN_READING,
             )
-            | (Self::Scan, CARMEN_RAW | CARMEN_RAW_REAR)
             | (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS)
             | (Self::Percept | Self::Door, EVENT)
             | (Self::Marker, APRIL_TAGS | DETECTIONS | POSE | POSE_WITH_COVARIANCE) => &[],
