@@ -2,7 +2,7 @@
 //!
 //! The messages of a bag, an MCAP file or a database come in the order of their times. One with a wrong time
 //! comes first or last, far from where the robot was when it was recorded. (Lines come in the order of their
-//! file; `log::container::clock` skips those with a wrong time.)
+//! file; `container::clock` of `toposlam-logs` gives each a time.)
 
 /// Messages with a longer time between them, in nanoseconds, do not stand together. A robot may pause.
 pub(super) const PAUSE: u64 = 3_600_000_000_000;

@@ -109,7 +109,11 @@ pub enum LogErrorKind {
     /// The pose of a scanner on its robot is not known.
     #[error("message {number}, on {topic}: {what}")]
     Frame { number: u64, topic: String, what: String },
-    #[error("{first} (at least {} of {} messages on the topic cannot be used)", grouped((*count).into()), grouped((*all).into()))]
+    #[error(
+        "{first} (at least {} of {} messages on the topic cannot be used)",
+        grouped((*count).into()),
+        grouped((*all).into())
+    )]
     Unusable { first: Box<LogErrorKind>, count: u64, all: u64 },
 }
 

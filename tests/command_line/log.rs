@@ -155,3 +155,29 @@ fn the_log_of_an_interrupted_run_ends_with_the_interruption() {
     assert_eq!(last.channel.topic, "/toposlam/end");
     assert!(String::from_utf8_lossy(&last.data).contains("stopped\0"));
 }
+
+/// A limit of the size of files stands for a full disk.
+#[cfg(unix)]
+#[test]
+fn a_log_that_cannot_be_written_leaves_the_earlier_one_as_it_was() {
+    let scratch = Scratch::new("log-full-disk");
+    scratch.out("simulate worlds/shape-6.toml --by-scene --log run.mcap", 0);
+    let [log, partial] = ["run.mcap", "run.partial.mcap"].map(|name| scratch.path(name));
+    let before = fs::read(&log).unwrap();
+    let program = env!("CARGO_BIN_EXE_toposlam");
+    let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/shape-8.toml");
+    let call = format!(
+        "trap '' XFSZ; ulimit -f 20; '{program}' simulate '{plan}' --by-scene --log '{}'",
+        log.display()
+    );
+    let output = Command::new("sh").args(["-c", &call]).output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("the earlier log is kept, and what was written is "), "{error}");
+    assert_eq!(fs::read(&log).unwrap(), before);
+    assert!(partial.is_file());
+    // A complete log replaces it.
+    scratch.out("simulate worlds/shape-8.toml --by-scene --log run.mcap", 0);
+    assert_ne!(fs::read(&log).unwrap(), before);
+    assert!(!partial.exists());
+}

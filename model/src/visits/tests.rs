@@ -14,6 +14,7 @@ use crate::{
     world::{GraphWorld, State, World},
 };
 
+#[expect(clippy::unnecessary_wraps, reason = "as it is among alternatives")]
 fn unmarked(degree: u32, door: u32) -> Option<VisitAlternative> {
     let percept = Percept { degree, sighting: Sighting::Nothing };
     Some(VisitAlternative { percept, door: Some(Door(door)) })
