@@ -1,12 +1,12 @@
 //! The mirror's rim in images: a circle with an edge all along it.
 //!
 //! The images are averaged, which leaves little of the scene; the edge may be of either sign. Of a narrow dark ring
-//! around the mirror, the rim is the inner border. Of other circles around one centre, it is not known which one is the
-//! rim. No circle is better than a wrong one: the rim must be seen on enough bearings, no other circle may be seen about
-//! as well, and it must stay the same if any part of it is left out.
+//! around the mirror, the rim is the inner border. Of other circles around one centre, it is not known which one is
+//! the rim. No circle is better than a wrong one: the rim must be seen on enough bearings, no other circle may be seen
+//! about as well, and it must stay the same if any part of it is left out.
 //!
-//! Lengths are in pixels. A *unit* is a pixel in a circle of radius 450, and more in a larger one. Brightness is that of
-//! images whose mean is 64.
+//! Lengths are in pixels. A *unit* is a pixel in a circle of radius 450, and more in a larger one. Brightness is that
+//! of images whose mean is 64.
 
 mod brightness;
 mod circle;
