@@ -109,7 +109,7 @@ impl CalibrateArguments {
             }
             None => rim::find(&grey),
         };
-        let rim = rim.map_err(|error| self.no_rim(error))?;
+        let rim = rim.map_err(|error| self.no_rim(&error))?;
         let mask = match &self.mask_out {
             Some(path) => {
                 let name = self.mask_name(path);
@@ -208,8 +208,8 @@ impl CalibrateArguments {
     }
 
     /// The failure if no rim was found.
-    fn no_rim(&self, error: RimError) -> CliError {
-        let error = match &error {
+    fn no_rim(&self, error: &RimError) -> CliError {
+        let error = match error {
             RimError::NoRim => format!("{error}; set it with --rim U,V,R"),
             RimError::Uncertain { circles, .. } => {
                 let options = circles.iter().map(|[u, v, r]| format!("--rim {u:.1},{v:.1},{r:.1}"));
