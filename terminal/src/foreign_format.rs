@@ -23,47 +23,6 @@ pub(crate) fn world_of_other(bytes: &[u8]) -> Option<String> {
     ))
 }
 
-/// What a file that is not a calibration is, if it is one of another program.
-pub(crate) fn calibration_of_other(name: &str, bytes: &[u8]) -> Option<String> {
-    let text = beginning(bytes);
-    let has = |part: &str| text.contains(part);
-    let named = |kind: &str| {
-        format!(
-            "write a TOML file that names it, and give that: [camera] kind = \"{kind}\", file = {name:?}, \
-             viewpoint_height, ahead, seen_from"
-        )
-    };
-    let is_numbers = text.trim_start().starts_with('#') && has("polynomial") && !has("[camera]");
-    if is_numbers {
-        return Some(format!("this is a calibration of OCamCalib; {}", named("ocamcalib")));
-    }
-    if has("opencv-matrix") || has("MODEL_TYPE") || has("%YAML") {
-        if has("xi") {
-            let mei = named("mei");
-            return Some(format!("this is a calibration of OpenCV (omnidir) or camodocal; {mei}"));
-        }
-        return Some(
-            "this is a calibration of OpenCV for a camera without a mirror: it has no `xi`; the camera must be \
-             omnidirectional (`toposlam camera calibrate`)"
-                .to_owned(),
-        );
-    }
-    if has("camera_model:") && has("intrinsics:") {
-        let what = "this is a calibration of Kalibr";
-        if !has("omni") {
-            return Some(format!(
-                "{what} for a camera without a mirror; the camera must be omnidirectional"
-            ));
-        }
-        return Some(format!(
-            "{what}; write its intrinsics [xi, fu, fv, pu, pv] and its distortion as a file of camodocal \
-             (model_type: MEI, mirror_parameters, distortion_parameters, projection_parameters), and {}",
-            named("mei")
-        ));
-    }
-    None
-}
-
 /// The text at the beginning of a file.
 fn beginning(bytes: &[u8]) -> String {
     const HEAD: usize = 1 << 16;
@@ -88,16 +47,5 @@ mod tests {
         for text in ["name = \"x\"\n", "", "\u{1}\u{2}", "[floor]\ngraph = 1"] {
             assert_eq!(world_of_other(text.as_bytes()), None, "{text}");
         }
-        let calibration = |text: &str| calibration_of_other("c.txt", text.as_bytes());
-        for (text, what) in [
-            ("# direct polynomial\n\n5 1 2", "kind = \"ocamcalib\", file = \"c.txt\""),
-            ("%YAML:1.0\n---\nxi: 1.5", "kind = \"mei\""),
-            ("%YAML:1.0\n---\ndist: 1", "it has no `xi`"),
-            ("cam0:\n  camera_model: omni\n  intrinsics: [1]", "calibration of Kalibr; write"),
-            ("cam0:\n  camera_model: pinhole\n  intrinsics: [1]", "without a mirror"),
-        ] {
-            assert!(calibration(text).unwrap().contains(what), "{text}");
-        }
-        assert_eq!(calibration("# polynomial\n[camera]\nkind = \"mei\""), None);
     }
 }

@@ -67,11 +67,7 @@ pub fn read_camera(path: &Path) -> Result<Camera, CliError> {
         read_whole(fs::File::open(&path)?, 0, MOST)
     };
     let bytes = read(path)?;
-    calibration::read(&bytes, beside).map_err(|error| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let other = foreign_format::calibration_of_other(&name, &bytes);
-        CliError::in_file(path, other.unwrap_or_else(|| error.to_string()))
-    })
+    calibration::read(&bytes, beside).map_err(|error| CliError::in_file(path, error))
 }
 
 /// The failure for a file that is not a world, which may be one of another program.

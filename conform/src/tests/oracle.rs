@@ -66,12 +66,13 @@ fn is_undirected(trace: &Trace) -> bool {
 }
 
 /// Whether a world with at most this many edges explains a trace, from any start, with the marker along any
-/// dart or without one.
-pub(super) fn is_explained_by_small(trace: &Trace, edges: usize) -> bool {
+/// dart; also without one, unless the robot has one.
+pub(super) fn is_explained_by_small(trace: &Trace, edges: usize, is_marked: bool) -> bool {
     (1..=edges).any(|edges| {
         let mut visit = |found: EnumeratedGraph| {
             let graph = found.graph;
-            let mut markers = graph.darts().map(Some).chain([None]);
+            let without = (!is_marked).then_some(None);
+            let mut markers = graph.darts().map(Some).chain(without);
             let explains = |marker| Position { graph, marker, pose: Dart(0) }.explains(trace);
             if markers.any(explains) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };

@@ -178,9 +178,9 @@ fn quirk() -> impl Strategy<Value = Quirks> {
     (prop::sample::select(causes), event).prop_map(|(cause, event)| quirk_of(cause, event).unwrap())
 }
 
-/// Checks that no world of any size explains the trace up to an event, and that one explains it up to the
-/// event before.
-fn assert_impossible(trace: &Trace, event: usize) {
+/// Checks that no world of any size explains the trace up to an event, of a robot with a marker or without one, and that
+/// one explains it up to the event before.
+fn assert_impossible(trace: &Trace, event: usize, is_marked: bool) {
     if let Some(before) = event.checked_sub(1) {
         let before = trace.up_to(before);
         // Where an undirected marker may lie in too many ways, this is not decided.
@@ -190,8 +190,13 @@ fn assert_impossible(trace: &Trace, event: usize) {
         }
     }
     let cut = trace.up_to(event);
-    assert!(!matches!(witness(&cut), Ok(Some(_))), "event {event} is possible");
-    assert!(!is_explained_by_small(&cut, 3), "event {event} is possible");
+    if let Ok(Some((graph, marker, pose))) = witness(&cut) {
+        // The marker would lie where the robot has not been.
+        let explains = |dart| Position { graph: &graph, marker: Some(dart), pose }.explains(&cut);
+        let has_place = marker.is_some() || graph.darts().any(explains);
+        assert!(is_marked && !has_place, "event {event} is possible");
+    }
+    assert!(!is_explained_by_small(&cut, 3, is_marked), "event {event} is possible");
 }
 
 /// Checks that each world that explains the trace up to an event has a loop or parallel edges, and that this
@@ -282,7 +287,9 @@ proptest! {
                     Impossibility::Class { .. } => {
                         prop_assert_eq!(config.search.class, Class::Planar);
                     }
-                    _ => assert_impossible(trace, event),
+                    _ => {
+                        assert_impossible(trace, event, config.marker.name() != NoMarker.name());
+                    }
                 }
             }
             Some(DivergenceCause::World(misfit)) => {
@@ -370,7 +377,7 @@ proptest! {
         }
         if let (Some((event, _)), trace) = impossible(&kinds) {
             prop_assert!(event >= at);
-            assert_impossible(&trace, event);
+            assert_impossible(&trace, event, true);
         } else {
             let trace = Trace::new(kinds).unwrap();
             let (graph, marker, pose) = witness(&trace).unwrap().expect("a world explains it");
