@@ -262,7 +262,12 @@ fn possible(visits: &PossibleVisits, facts: &Facts) -> Option<String> {
     let open = visits.visits - visits.certain;
     let whose = if facts.world.is_some() { "the world" } else { "some world" };
     let fit = match visits.fit {
-        VisitFit::Fits => format!("a choice of their percepts fits {whose}"),
+        VisitFit::Fits if visits.is_certain_enough() => {
+            format!("a choice of their percepts fits {whose}")
+        }
+        VisitFit::Fits => format!(
+            "a choice of their percepts fits {whose}, which says little: less than two thirds are certain"
+        ),
         VisitFit::Contradiction => format!("no choice of their percepts fits {whose}"),
         VisitFit::Anything => {
             let why = "any visits would fit: there is no marker, and the robot never turned back";
