@@ -193,7 +193,7 @@ impl LogCheck<'_> {
         })?;
         let judgement = if extracted.evidence == Evidence::Laser {
             let ExtractedRun { events, junctions, .. } = &extracted;
-            judgement.with_possible(PossibleVisits::judge(events, junctions, &config))
+            judgement.with_possible(PossibleVisits::judge(events, junctions, &config, watch))
         } else {
             judgement
         };

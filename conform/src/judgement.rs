@@ -392,13 +392,23 @@ impl Judgement {
     pub(super) fn with_possible(self, possible: PossibleVisits) -> Self {
         let contradiction = self.divergence;
         let known = if contradiction.is_none() { self.determined } else { None };
-        let determined = known.filter(|_| self.unrecognised.is_none());
-        Self { divergence: None, contradiction, possible: Some(possible), determined, ..self }
+        // Without the visits that are not certain, what the others show is no world.
+        let is_certain = self.unrecognised.is_none();
+        Self {
+            divergence: None,
+            contradiction,
+            possible: Some(possible),
+            determined: known.filter(|_| is_certain),
+            smallest: self.smallest.filter(|_| is_certain),
+            trail: self.trail.filter(|_| is_certain),
+            ..self
+        }
     }
 
     pub fn verdict(&self) -> ConformVerdict {
         let is_decided = match &self.possible {
-            Some(possible) if self.contradiction.is_some() || possible.says_nothing() => false,
+            Some(_) if self.contradiction.is_some() => false,
+            Some(possible) if possible.says_nothing() => false,
             Some(possible) if self.unrecognised.is_some() => possible.conform(),
             _ => self.unrecognised.is_none() && self.is_decided(),
         };
@@ -412,6 +422,11 @@ impl Judgement {
         } else {
             ConformVerdict::NotKnown
         }
+    }
+
+    /// Whether some visits are not certain, so that the sets of all take the place of the trace.
+    pub(crate) fn are_sets_judged(&self) -> bool {
+        self.possible.is_some() && self.unrecognised.is_some()
     }
 
     /// Whether no limit leaves the verdict open.
@@ -445,6 +460,7 @@ impl Judgement {
     /// was found.
     pub(crate) fn candidates(&self) -> usize {
         match (&self.poses, &self.smallest) {
+            _ if self.are_sets_judged() => self.possible.as_ref().map_or(0, |it| it.states.len()),
             (Some(poses), _) => poses.states.len(),
             (None, Some(SmallestWorld::World { .. })) => 1,
             _ => 0,

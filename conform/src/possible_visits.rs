@@ -5,15 +5,20 @@
 
 use serde::Serialize;
 use toposlam_model::{
+    enumerate::Watch,
     marker::{Directional, Marker, NoMarker},
     percept::{Door, Percept, Sighting},
-    visits::{Explanation, VisitAlternative, VisitSet, VisitWay, explain, states_after},
+    visits::{
+        Explanation, VisitAlternative, VisitSet, VisitWay, alternatives_left, explain, states_after,
+    },
+    world::State,
 };
 use toposlam_vision::visits::VisitPercept;
 
 use super::{
     config::{ConformConfig, RunDriver},
     events::{CheckedKind, RunEvents, UndecidedCause},
+    known_world::KnownWorld,
     marked_visits::VisitedJunction,
 };
 
@@ -26,6 +31,9 @@ pub struct PossibleVisits {
     /// Those of which the scans leave several percepts and the known world one, counted from 0.
     pub decided_by_world: Vec<usize>,
     pub fit: VisitFit,
+    /// Where the robot may be after the last visit in the known world.
+    #[serde(skip)]
+    pub(super) states: Vec<State>,
     /// Whether the robot may have taken any doors: those of an algorithm depend on the percepts.
     #[serde(skip)]
     by_anyone: bool,
@@ -46,8 +54,8 @@ pub enum VisitFit {
     NotKnown,
 }
 
-/// The largest number of steps in which a choice is searched for.
-const MOST_STEPS: usize = 1_000_000;
+/// The bound of the search for a choice that some world explains: a second, and a few hundred megabytes.
+const MOST_DARTS: usize = 20_000_000;
 /// More doors than this are not expected at a junction of which nothing is known.
 const MOST_DOORS: u32 = 8;
 /// A log conforms only if at least this part of its visits is certain: two thirds.
@@ -59,6 +67,7 @@ impl PossibleVisits {
         events: &RunEvents,
         junctions: &[VisitedJunction],
         config: &ConformConfig,
+        watch: &dyn Watch,
     ) -> Self {
         let by_anyone = config.driver == RunDriver::Anyone;
         let sets = visit_sets(events, junctions, config.marker);
@@ -72,27 +81,19 @@ impl PossibleVisits {
         }
         let is_marked = config.marker.name() == Directional.name();
         if let Some(known) = &config.world {
-            let fits = |sets: &[VisitSet]| {
-                let after = states_after(&known.graph, &config.marker, &known.states, sets);
-                after.len() == sets.len() && after.last().is_none_or(|states| !states.is_empty())
-            };
-            judged.fit = if fits(&sets) { VisitFit::Fits } else { VisitFit::Contradiction };
-            let mut only = sets.clone();
-            let mut is_decided = |set: usize| {
-                let mut one = |&alternative: &_| {
-                    only[set] = VisitSet::new([alternative], sets[set].way());
-                    fits(&only)
-                };
-                let left = sets[set].alternatives().iter().filter(|it| one(it)).count();
-                only[set].clone_from(&sets[set]);
-                left == 1 && !sets[set].is_certain()
-            };
+            let KnownWorld { graph, states } = known;
+            let mut after = states_after(graph, &config.marker, states, &sets);
+            judged.states = after.pop().unwrap_or_default();
+            let fits = sets.is_empty() || !judged.states.is_empty();
+            judged.fit = if fits { VisitFit::Fits } else { VisitFit::Contradiction };
+            let left = alternatives_left(graph, &config.marker, states, &sets);
+            let is_decided = |set: usize| left[set].len() == 1 && !sets[set].is_certain();
             let numbered = of_junctions.iter().enumerate();
             judged.decided_by_world =
                 numbered.filter(|&(_, &set)| is_decided(set)).map(|(number, _)| number).collect();
         } else if is_marked || config.marker.name() == NoMarker.name() {
             let may_contradict = is_marked || sets.iter().any(|set| set.way() == VisitWay::Back);
-            judged.fit = match explain(&sets, is_marked, MOST_STEPS) {
+            judged.fit = match explain(&sets, is_marked, MOST_DARTS, watch) {
                 Explanation::Explained(_) if may_contradict => VisitFit::Fits,
                 Explanation::Explained(_) => VisitFit::Anything,
                 Explanation::Impossible { .. } => VisitFit::Contradiction,
@@ -108,9 +109,9 @@ impl PossibleVisits {
         self.visits > 0 && of * self.certain >= least * self.visits
     }
 
-    /// Whether any log of such a robot would fit.
+    /// Whether they decide nothing: no choice fits, or any visits of such a robot would.
     pub(super) fn says_nothing(&self) -> bool {
-        self.by_anyone && self.fit == VisitFit::Anything
+        self.fit == VisitFit::Contradiction || self.by_anyone && self.fit == VisitFit::Anything
     }
 
     /// Whether the visits conform, as sets.

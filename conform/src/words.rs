@@ -81,6 +81,12 @@ pub fn fits(report: &LogReport) -> String {
     if let Some(ScanContradiction { event, .. }) = report.facts.contradiction {
         return format!("The events before event {} fit.", grouped(event as u128));
     }
+    if let Some(visits) = &report.facts.possible
+        && (visits.visits > visits.certain || visits.fit == VisitFit::Contradiction)
+    {
+        let [certain, all] = [visits.certain, visits.visits].map(|count| grouped(count as u128));
+        return format!("{certain} of {all} visits are certain.");
+    }
     let all = match report.events.len() {
         0 => return "There are no events.".to_owned(),
         1 => "The only event fits".to_owned(),
@@ -178,12 +184,11 @@ fn more(listed: usize, all: usize) -> Option<String> {
     (all > listed).then(|| format!("and {} more", all - listed))
 }
 
-/// The reasons for the verdict, and further remarks.
+/// The reasons for the verdict, and further remarks; what was skipped or repaired comes last.
 pub fn remarks(report: &LogReport) -> Vec<String> {
     let LogReport { facts, verdict, events, .. } = report;
     let mut remarks: Vec<String> = other_world(facts).into_iter().collect();
     remarks.extend(facts.truncated.as_ref().map(|truncation| format!("the log is {truncation}")));
-    remarks.extend(reading(facts));
     match &facts.ending {
         Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),
         Some(RunEnding::GaveUp(cause)) => {
@@ -245,6 +250,7 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
         let images = counted(facts.unreadable_images as usize, "image");
         remarks.push(format!("{images} could not be decoded and were skipped"));
     }
+    remarks.extend(reading(facts));
     remarks
 }
 
@@ -260,7 +266,11 @@ fn contradiction(ScanContradiction { event: number, found, cause }: &ScanContrad
 /// The visits of a laser log that are not certain, and why any log would fit.
 fn possible(visits: &PossibleVisits, facts: &Facts) -> Option<String> {
     let open = visits.visits - visits.certain;
-    let whose = if facts.world.is_some() { "the world" } else { "some world" };
+    let (whose, none) = if facts.world.is_some() {
+        ("the world", "the world fits no")
+    } else {
+        ("some world", "no world fits any")
+    };
     let fit = match visits.fit {
         VisitFit::Fits if visits.is_certain_enough() => {
             format!("a choice of their percepts fits {whose}")
@@ -268,7 +278,7 @@ fn possible(visits: &PossibleVisits, facts: &Facts) -> Option<String> {
         VisitFit::Fits => format!(
             "a choice of their percepts fits {whose}, which says little: less than two thirds are certain"
         ),
-        VisitFit::Contradiction => format!("no choice of their percepts fits {whose}"),
+        VisitFit::Contradiction => format!("{none} choice of their percepts"),
         VisitFit::Anything => {
             let why = "any visits would fit: there is no marker, and the robot never turned back";
             return Some(if open == 0 {

@@ -246,8 +246,12 @@ impl CheckedLog {
 
     fn world_fact(&self, known: &Known) -> WorldFact {
         let poses = self.judgement.poses.as_ref();
-        let last = poses.map(|poses| poses.left.last().copied());
-        let pose = poses.filter(|_| last == Some(Some(1))).and_then(|poses| poses.states.first());
+        let sets = self.judgement.possible.as_ref().filter(|_| self.judgement.are_sets_judged());
+        let (last, states) = match sets {
+            Some(sets) => (Some(Some(sets.states.len())), Some(&sets.states)),
+            None => (poses.map(|it| it.left.last().copied()), poses.map(|it| &it.states)),
+        };
+        let pose = states.filter(|_| last == Some(Some(1))).and_then(|states| states.first());
         WorldFact {
             name: known.world.name.clone(),
             start: known.start.map(|start| known.world.start_text(start)),

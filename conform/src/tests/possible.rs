@@ -36,7 +36,7 @@ fn judged_visits(visits: &[Seen], world: Option<&EmbeddedGraph>) -> Judgement {
     let states = |graph: &EmbeddedGraph| anywhere(graph, &NoMarker);
     let world = world.map(|graph| KnownWorld { graph: graph.clone(), states: states(graph) });
     let config = ConformConfig { world, marker: &NoMarker, ..by_anyone() };
-    judged(&events, &config).with_possible(PossibleVisits::judge(&events, &junctions, &config))
+    judged(&events, &config).with_possible(PossibleVisits::judge(&events, &junctions, &config, &()))
 }
 
 fn verdict(judgement: &Judgement) -> (ConformVerdict, VisitFit, &[usize]) {

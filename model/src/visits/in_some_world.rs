@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 
 use super::{VisitAlternative, VisitSet, VisitWay};
-use crate::{folding::FoldedTrail, percept::Door};
+use crate::{enumerate::Watch, folding::FoldedTrail, percept::Door};
 
 /// Whether some world explains visits.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub enum Explanation {
     Explained(Vec<Option<VisitAlternative>>),
     /// No world explains any choice of the visits up to this one, counted from 0.
     Impossible { visit: usize },
-    /// The search was ended after its largest number of steps.
+    /// The search was stopped, or its bound was reached.
     NotKnown,
 }
 
@@ -47,25 +47,30 @@ struct Branch {
     untried: Vec<(Option<VisitAlternative>, Next)>,
 }
 
-/// Searches for a choice of the visits that some world explains, in at most so many steps. The robot has a directional
-/// marker, or none.
-pub fn explain(visits: &[VisitSet], is_marked: bool, most_steps: usize) -> Explanation {
+/// Searches for a choice of the visits that some world explains. The robot has a directional marker, or none. `bound` is
+/// the largest number of darts in the trails that are tried, all together: it limits time and memory.
+pub fn explain(
+    visits: &[VisitSet],
+    is_marked: bool,
+    bound: usize,
+    watch: &dyn Watch,
+) -> Explanation {
     let begin = Walk { trail: FoldedTrail::default(), next: Next::Begins };
     let Some(first) = visits.first() else { return Explanation::Explained(Vec::new()) };
     let mut branches = vec![Branch { untried: begin.ways(first, visits.len() == 1), walk: begin }];
     let mut choice = Vec::new();
     let mut tried = BTreeSet::new();
-    let (mut steps, mut farthest) = (0, 0);
+    let (mut darts, mut farthest) = (0_usize, 0);
     while let Some(branch) = branches.last_mut() {
         let Some((alternative, next)) = branch.untried.pop() else {
             branches.pop();
             choice.pop();
             continue;
         };
-        if steps == most_steps {
+        darts = darts.saturating_add(branch.walk.trail.dart_count() + 1);
+        if darts > bound || watch.stop() {
             return Explanation::NotKnown;
         }
-        steps += 1;
         let walk = branch.walk.after(alternative, next);
         let Some(walk) = walk.filter(|walk| !is_marked || walk.may_hold_marker()) else { continue };
         let visit = branches.len();

@@ -1,9 +1,11 @@
 //! Follows all choices of visits in a known world at once. The sets of states are themselves the proof that no choice
 //! fits: each is what the world makes of the one before it.
 
-use super::{VisitSet, VisitWay};
+use std::collections::BTreeSet;
+
+use super::{VisitAlternative, VisitSet, VisitWay};
 use crate::{
-    embedded_graph::EmbeddedGraph,
+    embedded_graph::{Dart, EmbeddedGraph},
     marker::Marker,
     world::{GraphWorld, State},
 };
@@ -21,16 +23,14 @@ pub fn states_after(
 ) -> Vec<Vec<State>> {
     let mut after: Vec<Vec<State>> = Vec::with_capacity(visits.len());
     for (index, visit) in visits.iter().enumerate() {
-        let is_last = index + 1 == visits.len();
         let before = after.last().map_or(starts, Vec::as_slice);
-        let mut states = Vec::new();
-        for &state in before {
-            add_states(graph, marker, state, (visit, is_last), &mut states);
-        }
-        states.sort_unstable();
-        states.dedup();
+        let step = &Step { graph, marker, way: visit.way(), is_last: index + 1 == visits.len() };
+        let all = before.iter().flat_map(|&state| {
+            visit.alternatives().iter().flat_map(move |&alternative| step.after(state, alternative))
+        });
+        let states: BTreeSet<State> = all.collect();
         let is_misfit = states.is_empty();
-        after.push(states);
+        after.push(states.into_iter().collect());
         if is_misfit {
             break;
         }
@@ -38,26 +38,61 @@ pub fn states_after(
     after
 }
 
-fn add_states(
+/// The alternatives of each visit that are in some choice that fits the world: none if no choice fits. If there is only
+/// one, the world decides the visit.
+pub fn alternatives_left(
     graph: &EmbeddedGraph,
     marker: &impl Marker,
-    state: State,
-    (visit, is_last): (&VisitSet, bool),
-    states: &mut Vec<State>,
-) {
-    let at = |pose| State { pose, ..state };
-    let sensed = GraphWorld::with_marker(graph, marker, state.placed.unwrap_or(state.pose));
-    let sensed = sensed.at(state).sensed();
-    for alternative in visit.alternatives() {
-        match alternative {
-            None if visit.way() == VisitWay::Through => states.push(state),
-            None => states.push(at(graph.opposite(state.pose))),
-            Some(alternative) if alternative.percept != sensed => {}
-            Some(alternative) if is_last && alternative.door.is_none() => states.push(state),
-            Some(alternative) => {
-                let far = |door| graph.opposite(graph.behind(state.pose, door));
-                states.extend(alternative.doors().map(|door| at(far(door))));
-            }
+    starts: &[State],
+    visits: &[VisitSet],
+) -> Vec<Vec<Option<VisitAlternative>>> {
+    let after = states_after(graph, marker, starts, visits);
+    let mut left = vec![Vec::new(); visits.len()];
+    if after.len() < visits.len() {
+        return left;
+    }
+    // The states from which the later visits fit.
+    let mut fitting: BTreeSet<State> = after.last().into_iter().flatten().copied().collect();
+    for (index, visit) in visits.iter().enumerate().rev() {
+        let before = index.checked_sub(1).map_or(starts, |before| after[before].as_slice());
+        let step = &Step { graph, marker, way: visit.way(), is_last: index + 1 == visits.len() };
+        let fits = |&state: &State, alternative| {
+            step.after(state, alternative).iter().any(|state| fitting.contains(state))
+        };
+        let is_left = |&alternative: &_| before.iter().any(|state| fits(state, alternative));
+        left[index] = visit.alternatives().iter().copied().filter(is_left).collect();
+        let goes_on = |state: &&State| left[index].iter().any(|&one| fits(state, one));
+        let earlier = before.iter().filter(goes_on).copied().collect();
+        fitting = earlier;
+    }
+    left
+}
+
+/// A visit in a world.
+struct Step<'g, M> {
+    graph: &'g EmbeddedGraph,
+    marker: &'g M,
+    way: VisitWay,
+    is_last: bool,
+}
+
+impl<M: Marker> Step<'_, M> {
+    /// The states after a visit with this alternative: none if it does not fit, several if it leaves the door open.
+    fn after(&self, state: State, alternative: Option<VisitAlternative>) -> Vec<State> {
+        let Self { graph, marker, way, is_last } = *self;
+        let at = |pose: Dart| State { pose, ..state };
+        let Some(alternative) = alternative else {
+            let back = way == VisitWay::Back;
+            return vec![if back { at(graph.opposite(state.pose)) } else { state }];
+        };
+        let world = GraphWorld::with_marker(graph, marker, state.placed.unwrap_or(state.pose));
+        if alternative.percept != world.at(state).sensed() {
+            return Vec::new();
         }
+        if is_last && alternative.door.is_none() {
+            return vec![state];
+        }
+        let far = |door| at(graph.opposite(graph.behind(state.pose, door)));
+        alternative.doors().map(far).collect()
     }
 }

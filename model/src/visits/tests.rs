@@ -6,7 +6,7 @@ use proptest::{collection::vec, prelude::*};
 
 use super::*;
 use crate::{
-    any_graph::{Class, any_graph, by_neighbours, starts},
+    any_graph::{Class, StopAt, any_graph, by_neighbours, starts},
     embedded_graph::{Dart, EmbeddedGraph},
     marker::{Directional, Marker, NoMarker},
     percept::Sighting,
@@ -115,7 +115,7 @@ fn a_visit_that_may_be_none_leaves_the_robot_on_its_edge() {
 fn turning_back_contradicts_a_vertex_that_has_another_degree_then() {
     let visit = |degree, door| VisitSet::new([unmarked(degree, door)], VisitWay::Through);
     let turned = VisitSet::turned_back;
-    let impossible = |visits: &[VisitSet]| match explain(visits, false, 1000) {
+    let impossible = |visits: &[VisitSet]| match explain(visits, false, 1000, &()) {
         Explanation::Impossible { visit } => Some(visit),
         Explanation::Explained(_) => None,
         Explanation::NotKnown => panic!("there are few choices"),
@@ -128,8 +128,17 @@ fn turning_back_contradicts_a_vertex_that_has_another_degree_then() {
     assert_eq!(impossible(&[visit(1, 0), visit(3, 0), visit(2, 1)]), Some(2));
     assert_eq!(impossible(&[VisitSet::new([], VisitWay::Through)]), Some(0));
     assert_eq!(impossible(&[]), None);
-    let unknown = VisitSet::new([None, unmarked(2, 1), unmarked(3, 1)], VisitWay::Through);
-    assert_eq!(explain(&vec![unknown; 20], false, 19), Explanation::NotKnown);
+}
+
+#[test]
+fn a_search_that_is_stopped_or_reaches_its_bound_knows_nothing() {
+    let visits = vec![VisitSet::new([unmarked(3, 1)], VisitWay::Through); 20];
+    // Before each visit the trail has the three darts of each earlier one.
+    let needed = (0..20).map(|visit| 3 * visit + 1).sum();
+    assert!(matches!(explain(&visits, false, needed, &()), Explanation::Explained(_)));
+    assert_eq!(explain(&visits, false, needed - 1, &()), Explanation::NotKnown);
+    assert_eq!(explain(&visits, false, needed, &StopAt::new(20)), Explanation::NotKnown);
+    assert!(matches!(explain(&visits, false, needed, &StopAt::new(21)), Explanation::Explained(_)));
 }
 
 #[test]
@@ -140,7 +149,7 @@ fn what_was_tried_in_vain_is_not_tried_again() {
     let mut visits = vec![fork(3)];
     visits.extend(vec![either; 40]);
     visits.extend([fork(3), VisitSet::turned_back(), fork(4)]);
-    assert_eq!(explain(&visits, false, 10_000), Explanation::Impossible { visit: 43 });
+    assert_eq!(explain(&visits, false, 100_000, &()), Explanation::Impossible { visit: 43 });
 }
 
 proptest! {
@@ -165,6 +174,21 @@ proptest! {
             if marked { drives(&graph, Directional, *start, choice) } else { drives(&graph, NoMarker, *start, choice) }
         });
         prop_assert_eq!(starts.iter().any(drives), !after(&visits).is_empty());
+        // What is left of a visit are the alternatives with which alone the others fit.
+        let left = if marked {
+            alternatives_left(&graph, &Directional, &starts, &visits)
+        } else {
+            alternatives_left(&graph, &NoMarker, &starts, &visits)
+        };
+        for (number, visit) in visits.iter().enumerate() {
+            let with = |&&alternative: &&_| {
+                let mut visits = visits.clone();
+                visits[number] = VisitSet::new([alternative], visit.way());
+                !after(&visits).is_empty()
+            };
+            let expected: Vec<_> = visit.alternatives().iter().filter(with).copied().collect();
+            prop_assert_eq!(&left[number], &expected, "visit {}", number);
+        }
     }
 
     #[test]
@@ -190,7 +214,7 @@ proptest! {
             };
             after.len() == visits.len() && !after[visits.len() - 1].is_empty()
         }));
-        match explain(&visits, marked, 100_000) {
+        match explain(&visits, marked, 100_000, &()) {
             Explanation::Explained(choice) => {
                 prop_assert!(in_small, "{choice:?}");
                 let chosen = |(visit, one): (&VisitSet, &_)| visit.alternatives().contains(one);
@@ -198,11 +222,11 @@ proptest! {
                 prop_assert_eq!(visits.len(), choice.len());
                 let only: Vec<_> = visits.iter().zip(&choice)
                     .map(|(visit, &one)| VisitSet::new([one], visit.way())).collect();
-                prop_assert!(matches!(explain(&only, marked, 1000), Explanation::Explained(_)));
+                prop_assert!(matches!(explain(&only, marked, 1000, &()), Explanation::Explained(_)));
             }
             Explanation::Impossible { visit } => {
                 prop_assert!(!in_small);
-                let before = explain(&visits[..visit], marked, 100_000);
+                let before = explain(&visits[..visit], marked, 100_000, &());
                 prop_assert!(matches!(before, Explanation::Explained(_)));
             }
             Explanation::NotKnown => prop_assert!(false, "there are few choices"),
