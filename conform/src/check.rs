@@ -20,7 +20,7 @@ use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 use super::{
     config::{ConformConfig, RunDriver},
     extract::{Evidence, ExtractConfig, ExtractError, ExtractedRun, extract},
-    judgement::{JudgeError, Judgement, judge},
+    judgement::{JudgeError, Judgement, Unproved, judge},
     known_world::{Known, KnownWorld, MarkerStart},
     log_head::{LogHead, MarkerNotShown},
     marked_visits::{AddedMarker, MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
@@ -191,11 +191,13 @@ impl LogCheck<'_> {
             }
             (error, _) => CheckError::Judge(error),
         })?;
-        let judgement = if extracted.evidence == Evidence::Laser {
-            let ExtractedRun { events, junctions, .. } = &extracted;
-            judgement.with_possible(PossibleVisits::judge(events, junctions, &config, watch))
-        } else {
-            judgement
+        let judgement = match &extracted {
+            ExtractedRun { evidence: Evidence::Laser, events, junctions, .. } => {
+                let possible = PossibleVisits::judge(events, junctions, &config, watch);
+                judgement.with_possible(possible)
+            }
+            ExtractedRun { got_lost: true, .. } => judgement.accusing_nobody(Unproved::Lost),
+            _ => judgement,
         };
         let twin = TwinWorld::find(&judgement, &config);
         let (is_resumed, quirks) = (settings.is_resumed, self.quirks.clone());

@@ -86,6 +86,9 @@ pub struct ExtractedRun {
     pub junctions: Vec<VisitedJunction>,
     /// The sightings of a marker that is a fiducial.
     pub sightings: Vec<TimedSighting>,
+    /// Whether the log records that the robot got lost and went on, which events that are inferred from scenes or images
+    /// do not show.
+    pub got_lost: bool,
 }
 
 /// The number of messages that were skipped when events were inferred, by the reason.
@@ -200,7 +203,12 @@ pub fn extract(
     watch: &impl Watch,
 ) -> Result<ExtractedRun, ExtractError> {
     let ExtractConfig { evidence, sensor, marked, mut laser } = *config;
-    let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]);
+    // Only the recorded events show that a robot got lost.
+    let recorded: &[Role] = match evidence {
+        Evidence::Scenes | Evidence::Images => &[Role::Percept, Role::Door],
+        Evidence::Recorded | Evidence::Laser => &[],
+    };
+    let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]).chain(recorded);
     let bound = mapping.only(asked).bind(log)?;
     let is_matched = evidence != Evidence::Laser || laser.matching.rounds > 0;
     let drift = if is_matched { None } else { measured_drift(log, &bound, &laser) };
@@ -242,9 +250,13 @@ pub fn extract(
         // Corners and dead ends are no visits: the recorded moves and map are those of another graph.
         (run.events.has_head, run.events.end, run.events.map) = (false, None, None);
     }
+    run.events.events = recorded.finish();
     run.events.events = match evidence {
-        Evidence::Recorded => recorded.finish(),
-        Evidence::Scenes | Evidence::Images => infer_events(&run.seen, marked),
+        Evidence::Recorded => run.events.events,
+        Evidence::Scenes | Evidence::Images => {
+            run.got_lost = run.events.trace().is_ok_and(|trace| !trace.lost().is_empty());
+            infer_events(&run.seen, marked)
+        }
         Evidence::Laser => {
             let (events, junctions) = visit_events(laser.finish());
             run.junctions = junctions;
@@ -381,7 +393,8 @@ impl<W: Watch> Extraction<'_, W> {
             }
             Content::Hypothesis(_) => return Ok(()),
         };
-        if matches!(kind, EventKind::Arrival(_) | EventKind::Door { .. }) {
+        let is_recorded = matches!(kind, EventKind::Arrival(_) | EventKind::Door { .. });
+        if is_recorded && self.run.evidence == Evidence::Recorded {
             let before = std::mem::replace(&mut self.last, stamp);
             OutOfOrder::check(before, stamp)
                 .map_err(|order| ExtractError::OutOfOrder { message: id.0, order })?;

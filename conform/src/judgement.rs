@@ -36,8 +36,8 @@ pub struct Judgement {
     /// Its arrivals and doors, up to the first that is out of turn. The ids are indices of `events`.
     pub trace: Trace,
     pub divergence: Option<Divergence>,
-    /// A divergence that accuses nobody, because scans may have shown what it needs wrongly.
-    pub contradiction: Option<Divergence>,
+    /// A divergence that accuses nobody, and why.
+    pub contradiction: Option<(Divergence, Unproved)>,
     /// The visits of a laser log, which decide its verdict.
     pub possible: Option<PossibleVisits>,
     /// The index of the first arrival after the robot got lost. Without a known world, the events from there on are
@@ -112,6 +112,15 @@ pub enum JudgeError {
     Algorithm { algorithm: MappingAlgorithm, marker: &'static str },
 }
 
+/// Why a divergence accuses nobody.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unproved {
+    /// Scans may show an arm wrongly where the robot did not drive.
+    Scans,
+    /// The robot got lost, which events that are inferred do not show.
+    Lost,
+}
+
 /// A limit that was reached before everything was checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReachedLimit {
@@ -182,24 +191,9 @@ impl Judgement {
         for shape in events.events.iter().filter_map(|event| event.arrival()?.shape) {
             *junctions.entry(shape).or_default() += 1;
         }
-        let mut judgement = Self {
-            events: events.clone(),
-            divergence: None,
-            contradiction: None,
-            possible: None,
-            lost: trace.lost().first().map(|&percept| trace.percept_event(percept).id),
-            unrecognised: None,
-            trail: None,
-            poses: None,
-            smallest: None,
-            determined: None,
-            ways: 1,
-            measured: MeasuredHallways::default(),
-            algorithm: None,
-            coverage: RunCoverage { junctions, ..RunCoverage::default() },
-            tolerated: Vec::new(),
-            trace,
-        };
+        let lost = trace.lost().first().map(|&percept| trace.percept_event(percept).id);
+        let coverage = RunCoverage { junctions, ..RunCoverage::default() };
+        let mut judgement = Self { lost, coverage, ..Self::uncompared(events, trace) };
         judgement.compare_world(config, &mut found);
         judgement.follow_algorithm(config, in_turn, &mut found);
         if in_turn && let Some(cause) = events.false_moves(&judgement.trace) {
@@ -228,14 +222,19 @@ impl Judgement {
         // A trace is never empty. Nothing is compared with this one.
         let any = Percept { degree: 1, sighting: Sighting::Nothing };
         let trace = Trace::new([TraceEventKind::Percept(any)]).ok()?;
-        Some(Self {
+        Some(Self { unrecognised, ..Self::uncompared(events, trace) })
+    }
+
+    /// The judgement before anything is compared.
+    fn uncompared(events: &RunEvents, trace: Trace) -> Self {
+        Self {
             events: events.clone(),
             trace,
             divergence: None,
             contradiction: None,
             possible: None,
             lost: None,
-            unrecognised,
+            unrecognised: None,
             trail: None,
             poses: None,
             smallest: None,
@@ -245,7 +244,7 @@ impl Judgement {
             algorithm: None,
             coverage: RunCoverage::default(),
             tolerated: Vec::new(),
-        })
+        }
     }
 
     fn compare_world(&mut self, config: &ConformConfig, found: &mut FirstDivergence) {
@@ -390,24 +389,28 @@ impl Judgement {
 
     /// The judgement of visits that were inferred from scans. Where some are not certain, they are judged as sets.
     pub(super) fn with_possible(self, possible: PossibleVisits) -> Self {
-        let contradiction = self.divergence;
-        let known = if contradiction.is_none() { self.determined } else { None };
         // Without the visits that are not certain, what the others show is no world.
         let is_certain = self.unrecognised.is_none();
+        let judgement = self.accusing_nobody(Unproved::Scans);
         Self {
-            divergence: None,
-            contradiction,
             possible: Some(possible),
-            determined: known.filter(|_| is_certain),
-            smallest: self.smallest.filter(|_| is_certain),
-            trail: self.trail.filter(|_| is_certain),
-            ..self
+            determined: judgement.determined.filter(|_| is_certain),
+            smallest: judgement.smallest.filter(|_| is_certain),
+            trail: judgement.trail.filter(|_| is_certain),
+            ..judgement
         }
+    }
+
+    /// The same judgement where a divergence proves nothing.
+    pub(super) fn accusing_nobody(self, why: Unproved) -> Self {
+        let contradiction = self.divergence.map(|divergence| (divergence, why));
+        let determined = self.determined.filter(|_| contradiction.is_none());
+        Self { divergence: None, contradiction, determined, ..self }
     }
 
     pub fn verdict(&self) -> ConformVerdict {
         let is_decided = match &self.possible {
-            Some(_) if self.contradiction.is_some() => false,
+            _ if self.contradiction.is_some() => false,
             Some(possible) if possible.says_nothing() => false,
             Some(possible) if self.unrecognised.is_some() => possible.conform(),
             _ => self.unrecognised.is_none() && self.is_decided(),

@@ -50,7 +50,9 @@ pub use extract::{
 };
 pub use impossible::Impossibility;
 pub use json::LogsLine;
-pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
+pub use judgement::{
+    ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, Unproved, judge,
+};
 pub use known_world::{Known, KnownWorld};
 pub use log_head::{LogHead, MarkerNotShown, RESUMED_REMARK};
 pub use marked_visits::{
@@ -65,8 +67,8 @@ pub use recorded_events::RecordedEvents;
 pub use report::{
     Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
     FoldedReport, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RecordedWorld,
-    ReportedEvent, ReportedVisit, RequiredCoverage, ScanContradiction, SmallestFound, SourceFile,
-    ToleratedQuirk, UnreadLog, WorldFact, case_names,
+    ReportedEvent, ReportedVisit, RequiredCoverage, SmallestFound, SourceFile, ToleratedQuirk,
+    UnprovedDivergence, UnreadLog, WorldFact, case_names,
 };
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};
 pub use twin::TwinWorld;

@@ -17,14 +17,14 @@ use super::{
     divergence::{DivergenceCause, FaultClass},
     events::{CheckedKind, UndecidedCause},
     extract::{Evidence, SkippedMessages},
-    judgement::{ConformVerdict, ReachedLimit},
+    judgement::{ConformVerdict, ReachedLimit, Unproved},
     marked_visits::AddedMarker,
     measured_hallways::MeasuredHallways,
     possible_visits::{PossibleVisits, VisitFit},
     report::{
         Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
         LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RequiredCoverage,
-        ScanContradiction, WorldFact,
+        UnprovedDivergence, WorldFact,
     },
     scan_odometry::StampCounts,
     twin::TwinWorld,
@@ -78,7 +78,7 @@ pub fn fault(fault: FaultClass) -> &'static str {
 
 /// The events of a log without a divergence.
 pub fn fits(report: &LogReport) -> String {
-    if let Some(ScanContradiction { event, .. }) = report.facts.contradiction {
+    if let Some(UnprovedDivergence { event, .. }) = report.facts.contradiction {
         return format!("The events before event {} fit.", grouped(event as u128));
     }
     if let Some(visits) = &report.facts.possible
@@ -216,7 +216,7 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
             remarks.push(cause.to_owned());
         }
     }
-    remarks.extend(facts.contradiction.as_ref().map(contradiction));
+    remarks.extend(facts.contradiction.as_ref().map(unproved));
     remarks.extend(facts.possible.as_ref().and_then(|visits| possible(visits, facts)));
     if let Some((event, why)) = facts.unrecognised
         && facts.possible.is_none()
@@ -254,13 +254,17 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
     remarks
 }
 
-/// What does not fit in a laser log.
-fn contradiction(ScanContradiction { event: number, found, cause }: &ScanContradiction) -> String {
+/// What does not fit, and why it accuses nobody.
+fn unproved(divergence: &UnprovedDivergence) -> String {
+    let UnprovedDivergence { event: number, found, cause, why } = divergence;
     let found = found.as_ref().map_or("end of the log".to_owned(), event);
-    format!(
-        "event {number} does not fit: {found}; {cause}. What scans show may be wrong where the robot did not drive, \
-         so this accuses nobody"
-    )
+    let why = match why {
+        Unproved::Scans => "what scans show may be wrong where the robot did not drive",
+        Unproved::Lost => {
+            "the log records that the robot got lost, which inferred events do not show"
+        }
+    };
+    format!("event {number} does not fit: {found}; {cause}. This accuses nobody: {why}")
 }
 
 /// The visits of a laser log that are not certain, and why any log would fit.

@@ -2,7 +2,7 @@
 
 use pyo3::{prelude::*, types::PyDict};
 use toposlam_conform::{
-    CheckError, CheckedKind, DoorChooser, Evidence, ExtractError, Facts, LogCheck, LogReport,
+    CheckError, CheckedKind, DoorChooser, Evidence, ExtractError, LogCheck, LogReport,
     LogSource, MarkerPlaceError, Quirks, RESUMED_REMARK, ReportedEvent, RobotStart, words,
 };
 use toposlam_logs::topic_map::TopicMap;
@@ -143,7 +143,9 @@ fn fields<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let LogReport { facts, .. } = report;
     let fields = PyDict::new(py);
-    fields.set_item("remarks", remarks(facts, is_resumed))?;
+    let resumed = is_resumed.then(|| RESUMED_REMARK.to_owned());
+    let remarks = words::remarks(report).into_iter().chain(resumed);
+    fields.set_item("remarks", remarks.collect::<Vec<_>>())?;
     fields.set_item("verdict", report.verdict.name())?;
     fields.set_item("evidence", facts.evidence.name())?;
     let begun = report.events.first().map_or(0, |event| event.source.time);
@@ -174,13 +176,6 @@ fn fields<'py>(
         fields.set_item("is_least", smallest.least)?;
     }
     Ok(fields)
-}
-
-/// What a reader of the report should know about the run.
-fn remarks(facts: &Facts, is_resumed: bool) -> Vec<String> {
-    let resumed = is_resumed.then(|| RESUMED_REMARK.to_owned());
-    let first = [words::other_world(facts), resumed].into_iter().flatten();
-    first.chain(words::reading(facts)).collect()
 }
 
 /// An event: seconds since the first one, kind, percept, door, and the pose in the known world if only one fits.

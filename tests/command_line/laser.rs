@@ -21,6 +21,11 @@ fn conform(scratch: &Scratch, log: &str) -> Value {
     objects(&stdout(&output)).pop().unwrap_or_else(|| panic!("{output:?}"))
 }
 
+/// What was skipped comes after the reasons for the verdict.
+fn last_remark(report: &Value) -> &Value {
+    report["remarks"].as_array().and_then(|remarks| remarks.last()).unwrap()
+}
+
 /// The recorder of an MCAP file or a database of rosbag2 has a clock.
 #[test]
 fn messages_off_the_clock_are_skipped_and_counted() {
@@ -60,11 +65,13 @@ fn messages_off_the_clock_are_skipped_and_counted() {
             true
         });
         let remark = "skipped messages: 4 whose time is far from that of all others";
+        let after = conform(&scratch, file);
+        assert_eq!(last_remark(&after), remark);
         has(
-            &conform(&scratch, file),
+            &after,
             &json!({
                 "skipped_messages": {"off_clock": 4, "scans_without_odometry": 0},
-                "scans": before["scans"].as_u64().unwrap() - 3, "remarks.0": remark,
+                "scans": before["scans"].as_u64().unwrap() - 3,
                 "verdict": before["verdict"], "events": before["events"], "event": before["event"],
                 "cause": before["cause"], "lengths": before["lengths"],
             }),
@@ -83,7 +90,8 @@ fn messages_off_the_clock_are_skipped_and_counted() {
     let without = late["skipped_messages"]["scans_without_odometry"].as_u64().unwrap();
     assert!((9..=11).contains(&without), "{late}");
     let remark = format!("skipped messages: {without} scans without odometry");
-    has(&late, &json!({ "skipped_messages.off_clock": 0, "remarks.0": remark }), "late odometry");
+    has(&late, &json!({ "skipped_messages.off_clock": 0 }), "late odometry");
+    assert_eq!(last_remark(&late), remark);
     // Topics that have no message carry no odometry.
     rewritten(&log, &changed, |_, message| !is_odometry(message) && message.channel.topic != "/tf");
     let message = scratch.error(&format!("conform changed.mcap {LASER}"));

@@ -18,7 +18,7 @@ use super::super::{
     divergence::DivergenceCause,
     events::{CheckedKind, UndecidedCause},
     extract::{Evidence, SkippedMessages},
-    judgement::Judgement,
+    judgement::{Judgement, Unproved},
     known_world::Known,
     log_head::LogHead,
     marked_visits::AddedMarker,
@@ -41,8 +41,8 @@ pub struct Facts {
     pub scans: u64,
     /// The visits of a laser log as sets of percepts.
     pub possible: Option<PossibleVisits>,
-    /// What does not fit in a laser log, and accuses nobody.
-    pub contradiction: Option<ScanContradiction>,
+    /// What does not fit, and accuses nobody.
+    pub contradiction: Option<UnprovedDivergence>,
     pub skipped_messages: SkippedMessages,
     pub truncated: Option<Truncation>,
     /// The lines of a log of lines that are not read.
@@ -93,15 +93,17 @@ pub struct Facts {
     pub drift: Option<f64>,
 }
 
-/// An event that does not fit, as the scans show it.
+/// An event that does not fit, which accuses nobody.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ScanContradiction {
+pub struct UnprovedDivergence {
     /// Its number, from 1; one more than there are at the end.
     pub event: usize,
     #[serde(skip)]
     pub found: Option<CheckedKind>,
     #[serde(serialize_with = "cause_name")]
     pub cause: DivergenceCause,
+    #[serde(skip)]
+    pub why: Unproved,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -192,10 +194,14 @@ impl CheckedLog {
             unreadable_images: extracted.unreadable,
             scans: extracted.scans,
             possible: judgement.possible.clone(),
-            contradiction: judgement.contradiction.as_ref().map(|found| ScanContradiction {
-                event: found.event + 1,
-                found: judgement.events.events.get(found.event).map(|event| event.kind.clone()),
-                cause: found.cause.clone(),
+            contradiction: judgement.contradiction.as_ref().map(|(divergence, why)| {
+                let found = judgement.events.events.get(divergence.event);
+                UnprovedDivergence {
+                    event: divergence.event + 1,
+                    found: found.map(|event| event.kind.clone()),
+                    cause: divergence.cause.clone(),
+                    why: *why,
+                }
             }),
             skipped_messages: extracted.skipped,
             truncated: source.log.truncation().cloned(),

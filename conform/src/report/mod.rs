@@ -16,7 +16,7 @@ use toposlam_model::{
 pub(super) use events::MarkerSeen;
 pub use events::{EventPose, PoseName, ReportedEvent, ReportedVisit};
 pub use facts::{
-    ComparedDoors, Facts, MapSize, OpenDoor, RecordedWorld, ScanContradiction, SmallestFound,
+    ComparedDoors, Facts, MapSize, OpenDoor, RecordedWorld, SmallestFound, UnprovedDivergence,
     WorldFact,
 };
 

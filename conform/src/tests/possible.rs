@@ -75,7 +75,7 @@ fn what_scans_show_accuses_nobody() {
     let crossing: Seen = (&[Some((4, 1))], false);
     let found = judged_visits(&[end, crossing], Some(&ring()));
     assert_eq!(verdict(&found), (ConformVerdict::NotKnown, VisitFit::Contradiction, &[][..]));
-    assert_eq!(found.contradiction.unwrap().event, 2);
+    assert_eq!(found.contradiction.unwrap().0.event, 2);
     // A choice of what is open can contradict the world, too.
     let open: Seen = (&[Some((4, 1)), Some((5, 1))], false);
     let found = judged_visits(&[end, open], Some(&ring()));
