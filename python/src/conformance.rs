@@ -2,8 +2,8 @@
 
 use pyo3::{prelude::*, types::PyDict};
 use toposlam_conform::{
-    CheckError, CheckedKind, DoorChooser, Evidence, ExtractError, LogCheck, LogReport,
-    LogSource, MarkerPlaceError, Quirks, RESUMED_REMARK, ReportedEvent, RobotStart, words,
+    CheckError, CheckedKind, DoorChooser, Evidence, ExtractError, LogCheck, LogReport, LogSource,
+    MarkerPlaceError, Quirks, RESUMED_REMARK, ReportedEvent, RobotStart, words,
 };
 use toposlam_logs::topic_map::TopicMap;
 use toposlam_model::{

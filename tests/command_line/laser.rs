@@ -22,8 +22,8 @@ fn conform(scratch: &Scratch, log: &str) -> Value {
 }
 
 /// What was skipped comes after the reasons for the verdict.
-fn last_remark(report: &Value) -> &Value {
-    report["remarks"].as_array().and_then(|remarks| remarks.last()).unwrap()
+fn last_remark(report: &Value) -> &str {
+    report["remarks"].as_array().and_then(|remarks| remarks.last()?.as_str()).unwrap()
 }
 
 /// The recorder of an MCAP file or a database of rosbag2 has a clock.

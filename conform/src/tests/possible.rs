@@ -4,16 +4,25 @@ use toposlam_model::{embedded_graph::EmbeddedGraph, marker::NoMarker, trace::any
 use toposlam_vision::visits::VisitPercept;
 
 use super::*;
-use crate::{PossibleVisits, UndecidedCause, VisitFit, VisitedJunction, known_world::KnownWorld};
+use crate::{
+    PossibleVisits, UndecidedCause, Unproved, VisitFit, VisitedJunction, known_world::KnownWorld,
+};
 
 /// A visit: what the scans cannot exclude, and whether the robot left the way that it came.
 type Seen<'s> = (&'s [Option<(u32, u32)>], bool);
+
+/// No junction: the robot turned back in the corridor.
+const TURNED_BACK: Seen = (&[None], true);
 
 /// The judgement of visits, in a world without a marker, from any of its darts, or in any world.
 fn judged_visits(visits: &[Seen], world: Option<&EmbeddedGraph>) -> Judgement {
     let mut kinds = Vec::new();
     let mut junctions = Vec::new();
     for &(seen, goes_back) in visits {
+        if (seen, goes_back) == TURNED_BACK {
+            kinds.push(CheckedKind::TurnedBack);
+            continue;
+        }
         let percept = |&(degree, door): &(u32, u32)| VisitPercept { degree, door: Some(door) };
         junctions.push(VisitedJunction {
             event: kinds.len(),
@@ -83,6 +92,42 @@ fn what_scans_show_accuses_nobody() {
 }
 
 #[test]
+fn a_divergence_of_a_robot_that_got_lost_leaves_the_verdict_open() {
+    let fork = || bare_arrival(3, Sighting::Nothing);
+    let events = bare_events([fork(), bare_door(5)]);
+    let config = ConformConfig { marker: &NoMarker, ..by_anyone() };
+    let found = judged(&events, &config);
+    assert_eq!(found.verdict(), ConformVerdict::Diverged);
+    let open = found.accusing_nobody(Unproved::Lost);
+    assert_eq!((open.verdict(), open.divergence), (ConformVerdict::NotKnown, None));
+}
+
+#[test]
+fn a_way_on_which_the_scanner_did_not_look_leaves_everything_open() {
+    let (end, fork): (Seen, Seen) = ((&[Some((1, 0))], true), (&[Some((3, 1))], false));
+    let mut found = judged_visits(&[end, fork], Some(&ring()));
+    assert_eq!(verdict(&found).1, VisitFit::Fits);
+    let mut events = found.events.clone();
+    events.events.push(CheckedEvent {
+        source: EventSource::default(),
+        kind: CheckedKind::Undecided(UndecidedCause::UnseenWay),
+    });
+    let config = ConformConfig { marker: &NoMarker, ..by_anyone() };
+    let possible = PossibleVisits::judge(&events, &[], &config, &());
+    assert_eq!((possible.fit, possible.certain), (VisitFit::UnseenWay, 0));
+    found = judged(&events, &config).with_possible(possible);
+    assert_eq!(verdict(&found).0, ConformVerdict::NotKnown);
+}
+
+#[test]
+fn a_log_of_which_no_visit_is_decided_is_not_known_to_conform() {
+    let open: Seen = (&[Some((3, 1)), None], false);
+    let found = judged_visits(&[open, open], Some(&ring()));
+    assert_eq!(verdict(&found), (ConformVerdict::NotKnown, VisitFit::Fits, &[][..]));
+    assert_eq!((found.unrecognised, found.candidates()), (Some(0), 8));
+}
+
+#[test]
 fn without_a_world_a_marker_and_turning_back_any_visits_would_fit() {
     let fork: Seen = (&[Some((3, 1))], false);
     let back: Seen = (&[Some((3, 0))], true);
@@ -93,6 +138,12 @@ fn without_a_world_a_marker_and_turning_back_any_visits_would_fit() {
     // It comes back to another number of doors.
     let other: Seen = (&[Some((4, 1))], false);
     let found = judged_visits(&[fork, back, other], None);
+    assert_eq!(verdict(&found).1, VisitFit::Contradiction);
+    // It turns back in the corridor, and sees the same junction again, or another one.
+    let found = judged_visits(&[fork, TURNED_BACK, fork], None);
+    assert_eq!(found.possible.as_ref().unwrap().fit, VisitFit::Fits);
+    let found = judged_visits(&[fork, TURNED_BACK, other], None);
+    assert_eq!(verdict(&found).0, ConformVerdict::NotKnown);
     assert_eq!(verdict(&found).1, VisitFit::Contradiction);
     // Nothing is known of a visit: it may have been any junction, or none.
     let anything: Seen = (&[], false);

@@ -109,7 +109,7 @@ fn a_visit_that_may_be_none_leaves_the_robot_on_its_edge() {
     // Where the log ends, no door was taken.
     let stands = VisitAlternative { door: None, ..unmarked(3, 0).unwrap() };
     let standing = VisitSet::new([Some(stands)], VisitWay::Through);
-    assert_eq!(poses(&[standing.clone()]), [3]);
+    assert_eq!(poses(std::slice::from_ref(&standing)), [3]);
     // Elsewhere any door may have been taken: of the ring, which has two ways round, or into the tail.
     assert_eq!(poses(&[standing, VisitSet::new([unmarked(1, 0)], VisitWay::Back)]), [3, 1]);
 }
