@@ -540,3 +540,64 @@ impl<S: Copy + Default> MappedRule<S> {
         wrapped(one - other).abs() < self.params.visit.same_way
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use toposlam_model::driving::odometry::Odometry;
+
+    use super::*;
+    use crate::{geometry::unit, place::ViewSector, sensing::SceneSensor, visits::VisitPercept};
+
+    /// The visits of a robot that comes from the west to a junction at the origin and leaves in a direction, where one view
+    /// in `every` shows arms in these directions.
+    fn visits(arms: &[f64], leaves: f64, every: usize) -> Vec<Visit<usize>> {
+        let mut rule = MappedRule::new(&LaserParams::default());
+        let mut log = VisitLog::default();
+        let come = (0..24).map(|step| Point2::new(-12.0 + 0.5 * f64::from(step), 0.0));
+        let leave = (0..24).map(|step| Point2::from(0.5 * f64::from(step) * unit(leaves)));
+        for (at, robot) in come.chain(leave).enumerate() {
+            let arms = arms.iter().map(|&direction| PlaceArm::certain(direction)).collect();
+            let place = SeenPlace { centre: Point2::origin(), clearance: 1.0, arms };
+            let places = if at % every == 0 { vec![place] } else { Vec::new() };
+            let view = PlaceView {
+                robot: Odometry { position: robot.into(), heading: 0.0 },
+                odometry_from_map: Isometry2::identity(),
+                possible_places: places.clone(),
+                places,
+                sector: ViewSector::ALL_AROUND,
+                scene: None,
+            };
+            rule.add_view(&mut log, at, &view, &SceneSensor);
+        }
+        rule.finish(&mut log);
+        log.visits
+    }
+
+    #[test]
+    fn an_arm_in_some_of_the_views_is_possible() {
+        let fork = [PI, FRAC_PI_2, 0.0];
+        let seen = |every| {
+            let visits = visits(&fork, 0.0, every);
+            visits.iter().map(Visit::alternatives).collect::<Vec<_>>()
+        };
+        // Clockwise from the west, the north is door 1.
+        let straight_on = Some(VisitPercept { degree: 3, door: Some(2) });
+        assert_eq!(seen(1), [vec![straight_on]]);
+        assert_eq!(seen(3), [vec![None, straight_on]], "in a third of the views");
+        assert_eq!(seen(100), [vec![]; 0]);
+    }
+
+    #[test]
+    fn a_robot_that_leaves_by_an_arm_beside_its_own_has_not_turned_back() {
+        let beside = PI - 0.75;
+        let went_back = |leaves| {
+            let visits = visits(&[PI, beside, 0.0], leaves, 1);
+            visits.iter().map(|visit| visit.goes_back).collect::<Vec<_>>()
+        };
+        assert_eq!(went_back(PI), [true]);
+        assert_eq!(went_back(beside), [false]);
+        assert_eq!(went_back(0.0), [false]);
+    }
+}
