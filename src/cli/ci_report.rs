@@ -161,6 +161,7 @@ fn rule(verb: &str) -> &'static str {
     match verb {
         "check" => "Every map is isomorphic to its world, within the bound on moves.",
         "counterexample" => "No two worlds are indistinguishable.",
+        "proofs" => "Every lemma holds in every case within its bound.",
         _ => "The log conforms to the specification.",
     }
 }
@@ -237,6 +238,20 @@ mod tests {
         assert_eq!(kinds, ["pass", "fail", "open"]);
         let location = &log["runs"][0]["results"][1]["locations"][0]["physicalLocation"];
         assert_eq!(location["artifactLocation"]["uri"], "a%20b/c%2Cd.mcap");
+    }
+
+    #[test]
+    fn each_verb_has_a_rule_of_its_own() {
+        let text =
+            |verb| sarif(verb, &cases())["runs"][0]["tool"]["driver"]["rules"][0].to_string();
+        for (verb, what) in [
+            ("check", "map"),
+            ("counterexample", "worlds"),
+            ("proofs", "lemma"),
+            ("conform", "log"),
+        ] {
+            assert!(text(verb).contains(what), "{}", text(verb));
+        }
     }
 
     #[test]
