@@ -586,7 +586,7 @@ mod tests {
         let straight_on = Some(VisitPercept { degree: 3, door: Some(2) });
         assert_eq!(seen(1), [vec![straight_on]]);
         assert_eq!(seen(3), [vec![None, straight_on]], "in a third of the views");
-        assert_eq!(seen(100), [vec![]; 0]);
+        assert!(seen(100).is_empty());
     }
 
     #[test]
