@@ -76,28 +76,31 @@ pub fn fault(fault: FaultClass) -> &'static str {
     }
 }
 
-/// The events of a log without a divergence.
-pub fn fits(report: &LogReport) -> String {
-    if let Some(UnprovedDivergence { event, .. }) = report.facts.contradiction {
-        return format!("The events before event {} fit.", grouped(event as u128));
+/// How many events of a log without a divergence fit; `None` if some visits are not certain.
+pub fn fits(report: &LogReport) -> Option<String> {
+    let Facts { contradiction, possible, unrecognised, .. } = &report.facts;
+    let is_open = |visits: &PossibleVisits| visits.visits > visits.certain;
+    if contradiction.is_none() && possible.as_ref().is_some_and(is_open) {
+        return None;
     }
-    if let Some(visits) = &report.facts.possible
-        && (visits.visits > visits.certain || visits.fit == VisitFit::Contradiction)
-    {
-        let [certain, all] = [visits.certain, visits.visits].map(|count| grouped(count as u128));
-        return format!("{certain} of {all} visits are certain.");
+    let first = contradiction.as_ref().map(|found| found.event);
+    if let Some(event) = first.or(unrecognised.map(|(event, _)| event)) {
+        return Some(match event {
+            1 => "No event is known to fit.".to_owned(),
+            _ => format!("The events before event {} fit.", grouped(event as u128)),
+        });
     }
     let all = match report.events.len() {
-        0 => return "There are no events.".to_owned(),
+        0 => return Some("There are no events.".to_owned()),
         1 => "The only event fits".to_owned(),
         count => format!("All {} events fit", grouped(count as u128)),
     };
     let tolerated = report.tolerated.iter().flat_map(|quirk| &quirk.events);
-    match tolerated.collect::<BTreeSet<_>>().len() {
+    Some(match tolerated.collect::<BTreeSet<_>>().len() {
         0 => all + ".",
         1 => all + ", except one that is tolerated.",
         count => format!("{all}, except {} that are tolerated.", grouped(count as u128)),
-    }
+    })
 }
 
 /// How often something was tolerated.

@@ -314,6 +314,11 @@ impl CheckedLog {
 }
 
 impl LogReport {
+    /// Whether its coverage says something: of a robot that no algorithm drove, no case is expected.
+    pub fn has_coverage(&self) -> bool {
+        self.driver != RunDriver::Anyone || self.coverage.iter().any(|case| case.count > 0)
+    }
+
     /// The coverage of several logs together. A case is reachable if it is in the world of any log.
     pub fn coverage_of(reports: &[Self]) -> Vec<CoveredCase> {
         let mut together: Vec<CoveredCase> = Vec::new();

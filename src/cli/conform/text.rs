@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use toposlam_conform::{
-    ConformReports, DivergenceReport, LogReport, ReportedEvent, RunDriver, ToleratedQuirk, words,
+    ConformReports, DivergenceReport, LogReport, ReportedEvent, ToleratedQuirk, words,
 };
 
 use crate::cli::text::{counted, grouped, print_command, print_hanging, printable, since_start};
@@ -27,8 +27,7 @@ pub(super) fn print(out: &mut dyn Write, report: &LogReport) -> io::Result<()> {
     for (name, fact) in words::facts(report) {
         print_fact(out, name, &fact)?;
     }
-    // Of a robot that no algorithm drove, no case is expected.
-    if report.driver != RunDriver::Anyone || report.coverage.iter().any(|case| case.count > 0) {
+    if report.has_coverage() {
         print_fact(out, "covered", &words::covered(&report.coverage))?;
     }
     for ToleratedQuirk { name, reason, events } in &report.tolerated {

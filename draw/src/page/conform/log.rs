@@ -26,7 +26,11 @@ pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String
         Level::Second | Level::Third => Level::Third,
     };
     let panel = |class: &str, name: &str, content: &str| panel(beneath, class, name, content);
-    let covered = panel("late", "Coverage", &coverage::content(&report.coverage));
+    let covered = if report.has_coverage() {
+        panel("late", "Coverage", &coverage::content(&report.coverage))
+    } else {
+        String::new()
+    };
     let judged = panel("late", "What was checked", &facts(report))
         + &panel("late", "Tolerated divergences", &tolerated(report, number));
     let proved = match report.divergence {
@@ -74,7 +78,7 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
     );
     let because = match &report.divergence {
         Some(divergence) => because(divergence, report, log),
-        None => format!("<p>{}</p>\n", words::fits(report)),
+        None => each(words::fits(report), |fits| format!("<p>{fits}</p>\n")),
     };
     let unique = each(words::unique(&report.facts), |unique| paragraph(&unique));
     let remarks = each(words::remarks(report), |remark| paragraph(&remark));

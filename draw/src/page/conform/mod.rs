@@ -165,7 +165,8 @@ fn row(report: &LogReport, number: usize) -> String {
         format!("<span class=\"chip\">{fault}</span> event {event}: {what}")
     } else {
         let remark = words::remarks(report).into_iter().next();
-        remark.map_or_else(|| words::fits(report), |remark| escaped(&remark))
+        let remark = remark.map(|remark| escaped(&remark));
+        remark.or_else(|| words::fits(report)).unwrap_or_default()
     };
     format!(
         "<tr><th scope=\"row\"><a href=\"#log-{number}\">{}</a></th>\
