@@ -176,6 +176,7 @@ impl LogCheck<'_> {
         }
         let mut events = extracted.events.clone();
         events.complete_sightings(marker).map_err(|error| CheckError::Judge(error.into()))?;
+        let complete = events.clone();
         // A robot that no algorithm drives may turn back between junctions.
         if driver == RunDriver::Anyone {
             events = events.without_excursions();
@@ -192,8 +193,8 @@ impl LogCheck<'_> {
             (error, _) => CheckError::Judge(error),
         })?;
         let judgement = match &extracted {
-            ExtractedRun { evidence: Evidence::Laser, events, junctions, .. } => {
-                let possible = PossibleVisits::judge(events, junctions, &config, watch);
+            ExtractedRun { evidence: Evidence::Laser, junctions, .. } => {
+                let possible = PossibleVisits::judge(&complete, junctions, &config, watch);
                 judgement.with_possible(possible)
             }
             ExtractedRun { got_lost: true, .. } => judgement.accusing_nobody(Unproved::Lost),

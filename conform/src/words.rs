@@ -220,7 +220,7 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
         }
     }
     remarks.extend(facts.contradiction.as_ref().map(unproved));
-    remarks.extend(facts.possible.as_ref().and_then(|visits| possible(visits, facts)));
+    remarks.extend(facts.possible.as_ref().and_then(|visits| possible(visits, report)));
     if let Some((event, why)) = facts.unrecognised
         && facts.possible.is_none()
     {
@@ -270,45 +270,50 @@ fn unproved(divergence: &UnprovedDivergence) -> String {
     format!("event {number} does not fit: {found}; {cause}. This accuses nobody: {why}")
 }
 
-/// The visits of a laser log that are not certain, and why any log would fit.
-fn possible(visits: &PossibleVisits, facts: &Facts) -> Option<String> {
-    let open = visits.visits - visits.certain;
-    let (whose, none) = if facts.world.is_some() {
-        ("the world", "the world fits no")
+/// The visits of a laser log that are not certain, and whether some choice of their percepts fits.
+fn possible(visits: &PossibleVisits, report: &LogReport) -> Option<String> {
+    let PossibleVisits { visits: all, certain, fit, decided_by_world, .. } = visits;
+    let (world, no_choice) = if report.facts.world.is_some() {
+        ("the world", "the world fits no choice of their percepts")
     } else {
-        ("some world", "no world fits any")
+        ("some world", "no world fits any choice of their percepts")
     };
-    let fit = match visits.fit {
-        VisitFit::Fits if visits.is_certain_enough() => {
-            format!("a choice of their percepts fits {whose}")
-        }
-        VisitFit::Fits => format!(
-            "a choice of their percepts fits {whose}, which says little: less than two thirds are certain"
+    let mut parts = Vec::new();
+    if certain < all {
+        parts.push(format!("{} of {all} visits not certain", all - certain));
+    }
+    match fit {
+        VisitFit::Fits | VisitFit::NotKnown if certain == all => {}
+        // The first event that does not fit is named.
+        VisitFit::Contradiction if report.facts.contradiction.is_some() => {}
+        VisitFit::Contradiction => parts.push(no_choice.to_owned()),
+        VisitFit::Anything => parts.push(
+            "any visits would fit: there is no marker, and the robot never turned back".to_owned(),
         ),
-        VisitFit::Contradiction => format!("{none} choice of their percepts"),
-        VisitFit::Anything => {
-            let why = "any visits would fit: there is no marker, and the robot never turned back";
-            return Some(if open == 0 {
-                why.to_owned()
-            } else {
-                format!("{open} of {} visits are not certain; {why}", visits.visits)
-            });
-        }
-        VisitFit::UnseenWay => {
+        VisitFit::UnseenWay => parts.push(
             "the robot drove where its scanner did not look, and may have passed more there"
-                .to_owned()
+                .to_owned(),
+        ),
+        VisitFit::NotKnown => {
+            parts.push(format!("whether their percepts fit {world} is not known"));
         }
-        VisitFit::NotKnown => format!("whether their percepts fit {whose} is not known"),
-    };
-    let decided: Vec<_> =
-        visits.decided_by_world.iter().map(|visit| (visit + 1).to_string()).collect();
-    let decided = match &decided[..] {
-        [] => String::new(),
-        [one] => format!("; the world decides visit {one}"),
-        several => format!("; the world decides visits {}", several.join(", ")),
-    };
-    (open > 0 || visits.fit == VisitFit::UnseenWay)
-        .then(|| format!("{open} of {} visits are not certain; {fit}{decided}", visits.visits))
+        VisitFit::Fits if report.driver != RunDriver::Anyone => parts.push(format!(
+            "a choice of their percepts fits {world}, but the doors of the algorithm are not compared with it"
+        )),
+        VisitFit::Fits if visits.is_certain_enough() => {
+            parts.push(format!("a choice of their percepts fits {world}"));
+        }
+        VisitFit::Fits => parts.push(format!(
+            "a choice of their percepts fits {world}, which says little: less than two thirds are certain"
+        )),
+    }
+    let decided: Vec<_> = decided_by_world.iter().map(|visit| (visit + 1).to_string()).collect();
+    match &decided[..] {
+        [] => {}
+        [one] => parts.push(format!("the world decides visit {one}")),
+        several => parts.push(format!("the world decides visits {}", several.join(", "))),
+    }
+    (!parts.is_empty()).then(|| parts.join("; "))
 }
 
 /// A remark on a log that was recorded in another world.
