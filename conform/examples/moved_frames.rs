@@ -23,9 +23,9 @@ use toposlam_logs::{
 use toposlam_model::driving::odometry::Odometry;
 use toposlam_vision::{
     geometry::{self, direction, distance},
-    laser::{params::LaserParams, scan::Scan},
+    laser::{params::LaserParams, scan::Scan, scan_log::ScanLog},
     params,
-    visits::{self, Visits},
+    visits::{self, logged_visits},
 };
 
 /// Turns of the frame in degrees, each with a shift along both axes in metres.
@@ -122,11 +122,9 @@ fn derived<'a>(
     scans: impl Iterator<Item = (&'a Arc<Scan>, Odometry)>,
     params: &LaserParams,
 ) -> (Vec<Visit>, usize) {
-    let mut visits = Visits::by_laser(*params);
-    for (scan, odometry) in scans {
-        visits.add_frame((), scan, &odometry);
-    }
-    let mut visits = visits.finish().visits;
+    let log = ScanLog::new(scans.map(|(scan, odometry)| (Arc::clone(scan), odometry)), *params);
+    let views = (0..log.len()).map(|view| log.view(view));
+    let mut visits = logged_visits(&log, views, |_| ()).visits;
     let all = visits.len();
     visits.retain(|visit| visit.doubt.is_none());
     let undecided = all - visits.len();

@@ -18,13 +18,9 @@ use toposlam_model::{
 };
 use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
-    laser::{
-        drift::{DriftMeter, ROUNDS},
-        params::LaserParams,
-        sensor::LaserSensor,
-    },
+    laser::{params::LaserParams, scan_log::ScanLog},
     sensing::Sensor,
-    visits::{APPROACH_RANGE, Visits},
+    visits::{APPROACH_RANGE, VisitLog, Visits, logged_visits},
 };
 
 use super::{
@@ -129,6 +125,8 @@ pub enum ExtractError {
 
 /// The number of images that are sensed in parallel.
 const TOGETHER: usize = 32;
+/// The number of views of laser scans that are made in parallel.
+const VIEWS: usize = 64;
 
 impl Serialize for Evidence {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -202,7 +200,7 @@ pub fn extract(
     config: &ExtractConfig,
     watch: &impl Watch,
 ) -> Result<ExtractedRun, ExtractError> {
-    let ExtractConfig { evidence, sensor, marked, mut laser } = *config;
+    let ExtractConfig { evidence, sensor, marked, laser } = *config;
     // Only the recorded events show that a robot got lost.
     let recorded: &[Role] = match evidence {
         Evidence::Scenes | Evidence::Images => &[Role::Percept, Role::Door],
@@ -210,28 +208,21 @@ pub fn extract(
     };
     let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]).chain(recorded);
     let bound = mapping.only(asked).bind(log)?;
-    let is_matched = evidence != Evidence::Laser || laser.matching.rounds > 0;
-    let drift = if is_matched { None } else { measured_drift(log, &bound, &laser) };
-    let drift = drift.filter(|&drift| drift > laser.matching.max_drift);
-    if drift.is_some() {
-        laser.matching.rounds = ROUNDS;
-    }
     let threads = rayon::current_num_threads();
     let events = RunEvents { truncated: log.truncation().is_some(), ..RunEvents::default() };
     let mut extraction = Extraction {
-        run: ExtractedRun { events, evidence, drift, ..ExtractedRun::default() },
+        run: ExtractedRun { events, evidence, ..ExtractedRun::default() },
         recorded: RecordedEvents::default(),
         scenes: PlacedScenes::default(),
         waiting: Vec::new(),
         last: 0,
         sensors: sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]),
         watch,
-        laser: Visits::by_laser(laser),
+        scans: Vec::new(),
         placing: ScanOdometry::default(),
-        last_scan: 0,
     };
     extraction.read_entries(log, &bound)?;
-    let Extraction { mut run, recorded, scenes, laser, .. } = extraction;
+    let Extraction { mut run, recorded, scenes, scans, .. } = extraction;
     run.scans -= run.skipped.scans_without_odometry;
     let (seen, off_clock) = scenes.finish()?;
     run.seen = seen;
@@ -258,42 +249,42 @@ pub fn extract(
             infer_events(&run.seen, marked)
         }
         Evidence::Laser => {
-            let (events, junctions) = visit_events(laser.finish());
-            run.junctions = junctions;
+            let (visits, drift) = laser_visits(scans, laser, watch);
+            let (events, junctions) = visit_events(visits);
+            (run.junctions, run.drift) = (junctions, drift);
             events
         }
     };
     Ok(run)
 }
 
-/// The drift of the heading of the odometry of a log with laser scans, in radians in 10 m. `None` if it is too
-/// short, up to its end or to what cannot be read.
-fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Option<f64> {
-    let mut meter = DriftMeter::new(*params);
-    let mut placing = ScanOdometry::default();
-    let mut take = |Entry { stamp, content, .. }: Entry| {
-        let stamp = stamp.nanoseconds();
-        let placed: Vec<PlacedScan> = match content {
-            Content::Event(EventKind::Odometry(odometry)) => placing.odometry(stamp, odometry),
-            Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) => {
-                let source = EventSource::default();
-                placing.scan(PlacedScan { source, stamp, scan, odometry })
-            }
-            _ => return,
-        };
-        for placed in placed {
-            meter.add_scan(&placed.scan, &placed.odometry);
-        }
-    };
-    let mut clock = MessageClock::default();
-    for entry in log.entries(bound).map_while(Result::ok).filter(is_timed) {
-        clock.next(entry.time, entry).into_iter().for_each(&mut take);
+/// The visits of a laser log, and the drift of the heading of its odometry in 10 m, in radians, if its scans are matched
+/// because of it.
+fn laser_visits(
+    scans: Vec<PlacedScan>,
+    params: LaserParams,
+    watch: &impl Watch,
+) -> (VisitLog<EventSource>, Option<f64>) {
+    let mut last = 0;
+    let sources: Vec<EventSource> = scans
+        .iter()
+        .map(|PlacedScan { source, .. }| {
+            // Scans are in the order of their stamps.
+            last = source.time.max(last);
+            EventSource { time: last, ..*source }
+        })
+        .collect();
+    let log = ScanLog::new(scans.into_iter().map(|placed| (placed.scan, placed.odometry)), params);
+    let mut views = Vec::with_capacity(log.len());
+    let mut done = 0;
+    while views.len() < log.len() && !watch.stop() {
+        let next = views.len()..log.len().min(views.len() + VIEWS);
+        views.par_extend(next.into_par_iter().map(|view| log.view(view)));
+        let scans = log.scan(views.len() - 1) + 1;
+        watch.part_done((scans - done) as u64);
+        done = scans;
     }
-    clock.finish().0.into_iter().for_each(&mut take);
-    for placed in placing.finish().into_iter().flatten() {
-        meter.add_scan(&placed.scan, &placed.odometry);
-    }
-    meter.finish()
+    (logged_visits(&log, views, |scan| sources[scan]), log.drift())
 }
 
 /// Whether an entry shows where the robot was at its time.
@@ -329,11 +320,9 @@ struct Extraction<'w, W> {
     /// One for each thread.
     sensors: Vec<Sensor>,
     watch: &'w W,
-    laser: Visits<LaserSensor, EventSource>,
+    scans: Vec<PlacedScan>,
     /// Scans that wait for their odometry.
     placing: ScanOdometry,
-    /// The time of the last scan that was sensed.
-    last_scan: u64,
 }
 
 impl<W: Watch> Extraction<'_, W> {
@@ -359,7 +348,7 @@ impl<W: Watch> Extraction<'_, W> {
         self.run.remarks = entries.remarks();
         self.run.stamps = self.placing.counts();
         match std::mem::take(&mut self.placing).finish() {
-            Some(waiting) => waiting.for_each(|placed| self.add_scan(placed)),
+            Some(waiting) => self.scans.extend(waiting),
             None if self.run.scans > 0 => {
                 return Err(ExtractError::NoOdometry { scans: self.run.scans });
             }
@@ -402,9 +391,7 @@ impl<W: Watch> Extraction<'_, W> {
         self.recorded.observe(source, &kind);
         match kind {
             EventKind::Odometry(odometry) => {
-                for placed in self.placing.odometry(stamp, odometry) {
-                    self.add_scan(placed);
-                }
+                self.scans.extend(self.placing.odometry(stamp, odometry));
                 if matches!(self.run.evidence, Evidence::Scenes | Evidence::Images) {
                     self.scenes.add_odometry(id, stamp, odometry);
                 }
@@ -416,9 +403,8 @@ impl<W: Watch> Extraction<'_, W> {
                 self.run.scans += 1;
                 self.run.scan_messages.push(id);
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
-                for placed in self.placing.scan(PlacedScan { source, stamp, scan, odometry }) {
-                    self.add_scan(placed);
-                }
+                let placed = PlacedScan { source, stamp, scan, odometry };
+                self.scans.extend(self.placing.scan(placed));
             }
             EventKind::Frame(frame) => {
                 self.waiting.push((source, stamp, frame));
@@ -431,15 +417,6 @@ impl<W: Watch> Extraction<'_, W> {
             _ => {}
         }
         Ok(())
-    }
-
-    /// Senses a laser scan.
-    fn add_scan(&mut self, PlacedScan { source, scan, odometry, .. }: PlacedScan) {
-        // Scans are in the order of their stamps.
-        self.last_scan = self.last_scan.max(source.time);
-        let source = EventSource { time: self.last_scan, ..source };
-        self.laser.add_frame(source, &scan, &odometry);
-        self.watch.part_done(1);
     }
 
     /// Senses the waiting frames.

@@ -89,6 +89,16 @@ impl ViewSector {
 }
 
 impl SeenPlace {
+    /// The same place in another frame.
+    #[must_use]
+    pub fn moved(mut self, motion: &Isometry2<f64>) -> Self {
+        self.centre = motion * self.centre;
+        for arm in &mut self.arms {
+            arm.direction = wrapped(arm.direction + motion.rotation.angle());
+        }
+        self
+    }
+
     /// The directions of its arms, without those that are excluded.
     pub fn directions(&self) -> impl Iterator<Item = f64> + '_ {
         self.arms.iter().filter(|arm| arm.certainty != Certainty::Excluded).map(|arm| arm.direction)

@@ -33,17 +33,13 @@ const APART: f64 = 0.3;
 const STRAIGHT: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum ArmView {
-    /// Free space is seen far enough on one straight line: what is beside it does not matter.
-    Far,
-    /// It is seen less far.
-    Near {
-        /// How far from the meet point free space is seen on one straight line, in metres.
-        depth: f64,
-        /// The parts of this line beside which there is a straight wall: on the side with less of it, and on
-        /// the other one.
-        walled: [f64; 2],
-    },
+pub(super) struct ArmView {
+    /// Whether free space is seen far enough on one straight line.
+    pub is_far: bool,
+    /// How far from the meet point free space is seen on the longest straight line, in metres.
+    pub depth: f64,
+    /// The parts of this line beside which there is a straight wall: on the side with less of it, and on the other one.
+    pub walled: [f64; 2],
 }
 
 #[derive(Clone, Copy)]
@@ -67,30 +63,32 @@ impl ArmView {
             line.iter().find(beyond).or(line.last()).map(|&(point, _)| point)
         };
         let Some((mouth, towards)) = behind(MOUTH).zip(behind(AHEAD)) else {
-            return Self::Near { depth: 0.0, walled: [0.0; 2] };
+            return Self { is_far: false, depth: 0.0, walled: [0.0; 2] };
         };
         let from = if distance(mouth, towards) > 0.5 { mouth } else { meet };
         let ahead = direction(from, towards);
         let left = unit(ahead + FRAC_PI_2);
         let starts = ASIDE.map(|aside| mouth + aside * left);
         let (mut longest, mut length) = (Ray { from: mouth, angle: ahead }, 0.0);
-        for number in (0..=FAN).flat_map(|number| [number, -number]) {
+        let mut is_far = false;
+        'fan: for number in (0..=FAN).flat_map(|number| [number, -number]) {
             let angle = ahead + STEP * f64::from(number);
             for from in starts {
                 let ray = Ray { from, angle };
                 let before = distance(from, meet);
                 let (free, _) = map.sight(from, angle, far - before);
-                if free + before >= far {
-                    return Self::Far;
-                }
-                if free > length {
+                is_far = free + before >= far;
+                if is_far || free > length {
                     (longest, length) = (ray, free);
+                }
+                if is_far {
+                    break 'fan;
                 }
             }
         }
         let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, map));
         walled.sort_by(f64::total_cmp);
-        Self::Near { depth: length + distance(longest.from, meet), walled }
+        Self { is_far, depth: length + distance(longest.from, meet), walled }
     }
 }
 

@@ -12,7 +12,8 @@
 //! * `skeleton`: their middle lines, the generalised Voronoi graph;
 //! * `arm_view`: how far one sees along an arm, and beside which walls; `viewpoint`: where no scan looked;
 //! * [`way_graph`]: its meet points and the arms that count, and `junctions`: junctions, corners and dead ends;
-//! * [`sensor`]: all of these steps, and [`pictures`] of them.
+//! * [`sensor`]: all of these steps, live, and [`pictures`] of them;
+//! * [`scan_log`]: the same of a log, by all of its scans.
 //!
 //! [`scene`] is another way, for the small buildings with right angles of Algorithm 2.
 
@@ -29,6 +30,7 @@ pub mod params;
 pub mod pictures;
 mod ray_counts;
 pub mod scan;
+pub mod scan_log;
 pub mod scene;
 pub mod sensor;
 mod skeleton;

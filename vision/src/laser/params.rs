@@ -97,6 +97,8 @@ params! {
         every: f64 = 0.4,
         /// See [`Self::every`]. Geometry.
         every_turn: f64 = 0.3,
+        /// The same length in a log: a scan is used if none is that is nearer. Geometry: half of a corridor.
+        logged_every: f64 = 0.8,
         /// A cell is an obstacle if at least this part of the rays that reached it ended there. Logs.
         occupied: f64 = 0.2,
         /// Two neighbouring rays end on one wall if their ends are nearer to each other than this, and on a line with a
@@ -124,6 +126,13 @@ params! {
         /// An arm counts if free space is seen this far on a straight line from the junction's centre.
         /// Geometry: what is left to [`Self::min_arm`] are the cells at both ends.
         sight: f64 = 9.5,
+        /// ... beside straight walls on both sides for this part of the line ... Logs: through glass, or the door of a room,
+        /// one sees far, too.
+        far_walls: f64 = 0.15,
+        /// ... or on one side for this part. Logs.
+        far_wall: f64 = 0.5,
+        /// An arm also counts if the robot drove this part of what is known of it. Geometry: it cuts corners.
+        driven_part: f64 = 0.8,
         /// An arm of which one sees less than this and that is not seen to end does not count, ... Logs.
         min_sight: f64 = 2.9,
         /// ... nor without a straight wall along this part of what is seen on one side, ... Logs, simulated buildings.
@@ -167,7 +176,8 @@ params! {
         merge: f64 = 1.3,
         /// The direction of an arm is measured this far behind the walls of the junction. Geometry.
         direction: f64 = 1.5,
-        /// The robot does not doubt an arm whose middle line is this near. Geometry: half of a corridor.
+        /// A robot this near to the middle line of an arm drives it; where the walls are farther away, one up to the walls.
+        /// Geometry: half of a corridor.
         robot_near: f64 = 0.8,
     }
 
@@ -210,6 +220,8 @@ params! {
         settle: f64 = 2.5,
         /// The number of views that decide: the last ones, which have seen most. Logs.
         views: usize = 8,
+        /// Their number in a log, where all have seen the same. Logs.
+        logged_views: usize = 40,
         /// An arm counts if it is seen in at least this part of them ... Logs.
         agree: f64 = 0.4,
         /// ... or in this part, if the robot came or left by it, ... Logs.
@@ -218,6 +230,8 @@ params! {
         doubt: f64 = 0.2,
         /// An arm in doubt matters if it is in so many views of a junction. Logs.
         doubted_views: usize = 2,
+        /// ... and in this part of them. Logs.
+        doubted_part: f64 = 0.3,
         /// A junction that was not seen on this length of the way is forgotten. Geometry: odometry drifts.
         memory: f64 = 30.0,
         /// A robot this near to where it was before goes back. Geometry: less than half of a corridor.
@@ -237,6 +251,11 @@ params! {
 }
 
 impl LocalMapParams {
+    /// The number of cells of a side of a local map; the robot is in the one in the middle.
+    pub(super) fn window(&self) -> usize {
+        2 * (self.reach / self.cell).ceil() as usize + 1
+    }
+
     /// How far the robot has driven since the last scan that was used, in metres; `None` if this one is not used, because the
     /// robot has hardly moved.
     pub(super) fn driven(&self, last: &mut Option<Odometry>, odometry: &Odometry) -> Option<f64> {

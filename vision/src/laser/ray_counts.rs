@@ -1,6 +1,6 @@
 //! Where rays of the last scans have passed and where they have ended, on the local map.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Isometry2, Point2, Vector2};
 
 use super::{
     grid::{Cell, Grid, floor},
@@ -17,6 +17,19 @@ pub(super) struct Rays {
     pub between: Vec<Point2<f64>>,
     /// Straight pieces of wall between the ends of neighbouring rays.
     pub walls: Vec<[Point2<f64>; 2]>,
+}
+
+impl Rays {
+    /// The same rays in another frame.
+    pub(super) fn moved(&self, motion: &Isometry2<f64>) -> Self {
+        let all = |points: &[Point2<f64>]| points.iter().map(|point| motion * point).collect();
+        Self {
+            from: motion * self.from,
+            hits: all(&self.hits),
+            between: all(&self.between),
+            walls: self.walls.iter().map(|ends| ends.map(|end| motion * end)).collect(),
+        }
+    }
 }
 
 /// Counts of rays. Rays are added, and removed again when their scan is forgotten.
@@ -53,30 +66,44 @@ impl RayCounts {
     }
 
     fn count(&mut self, rays: &Rays, change: impl Fn(&mut u32)) {
-        let from = self.place(rays.from);
-        for (ends, hit) in [(&rays.hits, true), (&rays.between, false)] {
+        let Self { side, ref mut hits, ref mut passes, .. } = *self;
+        let place = |point: Point2<f64>| (point - self.origin) / self.cell;
+        let index = |place: Vector2<f64>| index_of(side, cell_at(place));
+        let from = place(rays.from);
+        for (ends, is_hit) in [(&rays.hits, true), (&rays.between, false)] {
             for &end in ends {
-                let end = self.place(end);
-                let last = cell_at(end);
-                for at in cells(from, end, 1.0).filter(|&at| at != last) {
-                    if let Some(index) = self.index(at) {
-                        change(&mut self.passes[index]);
+                let end = place(end);
+                let last = index(end);
+                for_cells(side, [from, end], 1.0, |at| {
+                    if Some(at) != last {
+                        change(&mut passes[at]);
                     }
-                }
-                if let Some(index) = self.index(last).filter(|_| hit) {
-                    change(&mut self.hits[index]);
-                }
-            }
-        }
-        for &[one, other] in &rays.walls {
-            let (one, other) = (self.place(one), self.place(other));
-            let ends = [cell_at(one), cell_at(other)];
-            for at in cells(one, other, 2.0).filter(|at| !ends.contains(at)) {
-                if let Some(index) = self.index(at) {
-                    change(&mut self.hits[index]);
+                });
+                if let Some(last) = last.filter(|_| is_hit) {
+                    change(&mut hits[last]);
                 }
             }
         }
+        for ends in &rays.walls {
+            let ends = ends.map(place);
+            let known = ends.map(index);
+            for_cells(side, ends, 2.0, |at| {
+                if !known.contains(&Some(at)) {
+                    change(&mut hits[at]);
+                }
+            });
+        }
+    }
+
+    /// Whether a ray ended at most this many cells from a point, along both axes; `None` where no ray was.
+    pub(super) fn is_near_hit(&self, point: Point2<f64>, cells: i64) -> Option<bool> {
+        let [column, row] = cell_at(self.place(point));
+        let here = self.index([column, row])?;
+        let mut near = (-cells..=cells)
+            .flat_map(|x| (-cells..=cells).map(move |y| [column + x, row + y]))
+            .filter_map(|at| self.index(at));
+        let is_known = self.hits[here] > 0 || self.passes[here] > 0;
+        is_known.then(|| near.any(|index| self.hits[index] > 0))
     }
 
     /// Whether a window of this many cells a side fits around a point.
@@ -135,10 +162,14 @@ impl RayCounts {
         (point - self.origin) / self.cell
     }
 
-    fn index(&self, [column, row]: [i64; 2]) -> Option<usize> {
-        let within = |at: i64| (0..self.side as i64).contains(&at);
-        (within(column) && within(row)).then(|| row as usize * self.side + column as usize)
+    fn index(&self, cell: [i64; 2]) -> Option<usize> {
+        index_of(self.side, cell)
     }
+}
+
+fn index_of(side: usize, [column, row]: [i64; 2]) -> Option<usize> {
+    let within = |at: i64| (0..side as i64).contains(&at);
+    (within(column) && within(row)).then(|| row as usize * side + column as usize)
 }
 
 /// The cell at a place; far away, one beyond every map.
@@ -146,15 +177,48 @@ fn cell_at(place: Vector2<f64>) -> [i64; 2] {
     place.map(|at| floor(at.clamp(-1e9, 1e9))).into()
 }
 
-/// The cells on a line, each once, sampled this often on each cell that it crosses along its main axis.
-fn cells(from: Vector2<f64>, to: Vector2<f64>, density: f64) -> impl Iterator<Item = [i64; 2]> {
+/// The parts of a cell in which samples are placed: 2^32.
+const PARTS: f64 = 4_294_967_296.0;
+
+/// Visits the cells of a square map on a line, each once, sampled this often on each cell that it crosses along its main
+/// axis.
+fn for_cells(
+    side: usize,
+    [from, to]: [Vector2<f64>; 2],
+    density: f64,
+    mut visit: impl FnMut(usize),
+) {
     let [from, to] = [from, to].map(|place| place.map(|at| at.clamp(-1e9, 1e9)));
     let off = to - from;
     let steps = (density * off.amax()).ceil().max(1.0);
     let step = off / steps;
-    let mut last = None;
-    (0..=steps as u32).filter_map(move |number| {
-        let at = (from + f64::from(number) * step).map(floor);
-        (last.replace(at) != Some(at)).then_some(at.into())
-    })
+    // The samples on the map.
+    let (mut first, mut last) = (0.0_f64, steps);
+    for axis in 0..2 {
+        if step[axis] == 0.0 {
+            continue;
+        }
+        let ends = [0.0, side as f64].map(|border| (border - from[axis]) / step[axis]);
+        first = first.max(ends[0].min(ends[1]).floor());
+        last = last.min(ends[0].max(ends[1]).ceil());
+    }
+    if first > last {
+        return;
+    }
+    let in_parts = |at: f64| (at * PARTS) as i64;
+    let start = from + first * step;
+    let [mut x, mut y] = [start.x, start.y].map(in_parts);
+    let [east, north] = [step.x, step.y].map(in_parts);
+    let mut before = usize::MAX;
+    for _ in 0..=(last - first) as u32 {
+        let [column, row] = [(x >> 32) as usize, (y >> 32) as usize];
+        if column < side && row < side {
+            let at = row * side + column;
+            if at != before {
+                visit(at);
+                before = at;
+            }
+        }
+        (x, y) = (x + east, y + north);
+    }
 }

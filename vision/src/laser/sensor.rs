@@ -8,17 +8,19 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
     clearances::Clearances,
+    grid::Grid,
     matching::ScanMatcher,
     params::{LaserParams, LocalMapParams},
     ray_counts::{RayCounts, Rays},
     scan::Scan,
+    scan_log::is_near_origin,
     skeleton::Skeleton,
     viewpoint::Viewpoint,
     way_graph::{ArmJudge, CountedArms, WayGraph},
 };
 use crate::{
     geometry::{distance, from_robot, moved},
-    place::{PlaceSensor, PlaceView},
+    place::{PlaceSensor, PlaceView, SeenPlace},
 };
 
 /// Senses junctions with a laser scanner.
@@ -52,8 +54,15 @@ pub struct LocalMap {
     pub graph: WayGraph,
 }
 
-/// Odometry beyond this is wrong, in metres; cells near it would have no place.
-const FARTHEST: f64 = 1e7;
+/// What a local map shows, on that map.
+#[derive(Clone, Debug)]
+pub(super) struct LocalView {
+    pub map: LocalMap,
+    pub places: Vec<SeenPlace>,
+    /// The same if arms in doubt are arms, too.
+    pub possible_places: Vec<SeenPlace>,
+}
+
 /// Corners of cells, in cells from the origin. Successive views take them in turn: what several views agree on must not
 /// depend on how the walls lie in the cells.
 const CORNERS: [Vector2<f64>; 2] = [Vector2::new(0.0, 0.0), Vector2::new(0.5, 0.5)];
@@ -102,8 +111,7 @@ impl PlaceSensor for LaserSensor {
     /// `None` if the robot has hardly moved since the last view, or if the odometry is more than 10,000 km from its origin.
     fn view(&mut self, scan: &Scan, odometry: &Odometry) -> Option<PlaceView> {
         let params = self.params.map;
-        let pose = odometry.position.into_iter().chain([odometry.heading]);
-        if pose.into_iter().any(|number| !(-FARTHEST..=FARTHEST).contains(&number)) {
+        if !is_near_origin(odometry) {
             return None;
         }
         self.way += params.driven(&mut self.last, odometry)?;
@@ -116,31 +124,17 @@ impl PlaceSensor for LaserSensor {
         let placed = moved(&frame, odometry);
         let robot = self.matcher.add_scan(scan, &placed, self.way, self.way - params.memory);
         let position = Point2::from(robot.position);
-        let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
+        let side = params.window();
         self.add(rays(scan, &robot, &params), position, side);
         self.viewpoints.push_back(Viewpoint::new(scan, &robot));
         let counts = self.counts.get(self.views % self.counts.len().max(1))?;
         self.views += 1;
-        let mut grid = counts.window(position, side, &params);
-        grid.clean(&params);
-        let clearances = Clearances::new(grid);
-        let skeleton = Skeleton::new(&clearances, position, &self.params);
-        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &clearances));
-        let ways = ways.unwrap_or_default();
-        let judge = ArmJudge {
-            robot: position,
-            map: &clearances,
-            viewpoints: self.viewpoints.make_contiguous(),
-            params: &self.params.arm,
-        };
-        let (graph, any_in_doubt) = ways.clone().pruned(&judge, CountedArms::Seen);
-        let places = graph.places(&self.params);
-        let possible_places = if any_in_doubt {
-            ways.pruned(&judge, CountedArms::SeenOrInDoubt).0.places(&self.params)
-        } else {
-            places.clone()
-        };
-        self.map = Some(LocalMap { clearances, skeleton, graph });
+        let grid = counts.window(position, side, &params);
+        let viewpoints = self.viewpoints.make_contiguous();
+        let driven: Vec<_> = viewpoints.iter().map(Viewpoint::point).collect();
+        let LocalView { map, places, possible_places } =
+            LocalView::new(grid, position, viewpoints, &driven, &self.params);
+        self.map = Some(map);
         Some(PlaceView {
             robot,
             odometry_from_map: (self.matcher.correction() * frame).inverse(),
@@ -157,7 +151,33 @@ impl PlaceSensor for LaserSensor {
     }
 }
 
-fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
+impl LocalView {
+    /// What a map shows around the robot. It was at the points that were `driven`.
+    pub(super) fn new(
+        mut grid: Grid,
+        robot: Point2<f64>,
+        viewpoints: &[Viewpoint],
+        driven: &[Point2<f64>],
+        params: &LaserParams,
+    ) -> Self {
+        grid.clean(&params.map);
+        let clearances = Clearances::new(grid);
+        let skeleton = Skeleton::new(&clearances, robot, params);
+        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &clearances));
+        let ways = ways.unwrap_or_default();
+        let judge = ArmJudge { map: &clearances, viewpoints, driven, params: &params.arm };
+        let (graph, any_in_doubt) = ways.clone().pruned(&judge, CountedArms::Seen);
+        let places = graph.places(params);
+        let possible_places = if any_in_doubt {
+            ways.pruned(&judge, CountedArms::SeenOrInDoubt).0.places(params)
+        } else {
+            places.clone()
+        };
+        Self { map: LocalMap { clearances, skeleton, graph }, places, possible_places }
+    }
+}
+
+pub(super) fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
     let map_from_robot = from_robot(robot);
     let mut rays = Rays { from: map_from_robot * scan.scanner(), ..Rays::default() };
     let readings: Vec<(f64, Option<f64>)> = scan.ranges_hit().collect();

@@ -59,6 +59,10 @@ impl Viewpoint {
         }
     }
 
+    pub(super) fn point(&self) -> Point2<f64> {
+        self.point
+    }
+
     /// Whether the scan looked at a point. What is unknown hides nothing: a surface that reflects no ray back may be
     /// why it is unknown.
     pub(super) fn look(&self, point: Point2<f64>, map: &Clearances) -> Look {

@@ -57,8 +57,6 @@ pub(super) enum CountedArms {
 enum ArmStatus {
     /// It is an arm: it is seen far enough, or the robot is there.
     Certain,
-    /// It looks like an arm that goes on unseen.
-    Likely,
     /// It may be one: the scanner did not look into it, or it is seen to end but for a stretch of its border.
     InDoubt,
     /// It is an alcove, or too little of it is seen.
@@ -68,9 +66,10 @@ enum ArmStatus {
 /// What the arms of a graph are judged by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ArmJudge<'a> {
-    pub robot: Point2<f64>,
     pub map: &'a Clearances,
     pub viewpoints: &'a [Viewpoint],
+    /// Where the robot was.
+    pub driven: &'a [Point2<f64>],
     pub params: &'a ArmParams,
 }
 
@@ -88,6 +87,16 @@ struct UnseenBorder {
 }
 
 impl ArmJudge<'_> {
+    /// The length of a middle line that the robot drove, in metres.
+    fn driven(&self, line: &[(Point2<f64>, f64)]) -> f64 {
+        let is_driven = |&(point, clearance): &(Point2<f64>, f64)| {
+            let near = clearance.max(self.params.robot_near);
+            self.driven.iter().any(|&robot| distance(point, robot) < near)
+        };
+        let pieces = line.windows(2).filter(|two| is_driven(&two[1]));
+        pieces.map(|two| distance(two[0].0, two[1].0)).sum()
+    }
+
     fn unseen_border(&self, end: Point2<f64>) -> UnseenBorder {
         let (grid, params) = (&self.map.grid, self.params);
         let is_border = |&at: &usize| self.map.is_unknown_border(at);
@@ -222,13 +231,11 @@ impl WayGraph {
     /// Removes a way around an obstacle at the end of an alcove, which is no arm either: one that begins and ends at one
     /// meet point, and that is seen to go nowhere. The meet point becomes an end. Returns whether there was one.
     fn prune_loop(&mut self, judge: &ArmJudge<'_>, degrees: &mut [usize]) -> bool {
-        let ArmJudge { robot, params, .. } = *judge;
-        let is_near = |&(point, _): &(Point2<f64>, f64)| distance(point, robot) < params.robot_near;
         let is_alcove = |way: &Way| {
             way.nodes[0] == way.nodes[1]
                 && degrees[way.nodes[0]] == 3
-                && way.length / 2.0 < params.min_arm
-                && !way.line.iter().any(is_near)
+                && way.length / 2.0 < judge.params.min_arm
+                && judge.driven(&way.line) == 0.0
         };
         let Some(way) = self.ways.iter().position(is_alcove) else { return false };
         let Way { nodes: [node, _], length, .. } = self.ways.swap_remove(way);
@@ -250,32 +257,25 @@ impl WayGraph {
 
     /// Whether a way from a meet point to an end is an arm, and no alcove.
     fn arm_status(&self, way: usize, [meet, leaf]: [usize; 2], judge: &ArmJudge<'_>) -> ArmStatus {
-        let ArmJudge { robot, map, viewpoints, params } = *judge;
-        let way = &self.ways[way];
-        let (meet_node, leaf, meet) = (meet, &self.nodes[leaf], &self.nodes[meet]);
+        let ArmJudge { map, viewpoints, params, .. } = *judge;
+        let way = self.ways[way].clone().from_node(meet);
+        let (leaf, meet) = (&self.nodes[leaf], &self.nodes[meet]);
         let Some(end) = leaf.end else { return ArmStatus::Certain };
-        let has_robot = distance(robot, meet.point) > meet.clearance + params.min_behind
-            && way.line.iter().any(|&(point, _)| distance(point, robot) < params.robot_near);
         let known = way.length + end.beyond;
-        let is_behind = way.length >= meet.clearance + params.min_behind;
-        let is_long = match end.kind {
-            WayEnd::Closed => known + leaf.clearance >= params.min_arm,
-            WayEnd::Open | WayEnd::Unclear => is_behind && known >= params.min_arm,
-        };
-        if has_robot || is_long {
-            return ArmStatus::Certain;
-        }
-        if !is_behind {
+        if way.length < meet.clearance + params.min_behind {
             return ArmStatus::None;
         }
-        let way = way.clone().from_node(meet_node);
-        let ArmView::Near { depth, walled } =
-            ArmView::new(&way.line, (meet.point, meet.clearance), map, params.sight)
-        else {
+        let behind = way.line.iter().position(|(point, _)| {
+            distance(*point, meet.point) >= meet.clearance + params.min_behind
+        });
+        let behind = way.line.get(behind.unwrap_or_default()..).unwrap_or_default();
+        let (driven, length) = (judge.driven(behind), length(behind));
+        // The robot drove it for as long as makes an arm, or as far as it is known and not seen to end.
+        let is_driven = driven + meet.clearance + params.min_behind >= params.min_arm
+            || end.kind != WayEnd::Closed
+                && driven >= params.min_possible.max(params.driven_part * length);
+        if is_driven {
             return ArmStatus::Certain;
-        };
-        if end.kind == WayEnd::Closed {
-            return ArmStatus::None;
         }
         let is_between = |(point, _): &&(Point2<f64>, f64)| {
             distance(*point, meet.point) > meet.clearance
@@ -284,7 +284,25 @@ impl WayGraph {
         let widths = way.line.iter().filter(is_between).map(|&(_, clearance)| 2.0 * clearance);
         let width = median(widths.clone()).unwrap_or(2.0 * leaf.clearance);
         let widest = widths.fold(width, f64::max);
-        let [less, more] = walled;
+        let ArmView { is_far, depth, walled: [less, more] } =
+            ArmView::new(&way.line, (meet.point, meet.clearance), map, params.sight);
+        let has_walls = less >= params.far_walls || more >= params.far_wall;
+        if is_far && has_walls {
+            return ArmStatus::Certain;
+        }
+        let is_long = match end.kind {
+            WayEnd::Closed => known + leaf.clearance >= params.min_arm,
+            WayEnd::Open | WayEnd::Unclear => known >= params.min_arm,
+        };
+        // A hall is wider, and so is what one sees through glass.
+        if is_far && (width <= params.max_width || less >= params.far_walls)
+            || is_long && width <= params.max_width
+        {
+            return ArmStatus::InDoubt;
+        }
+        if end.kind == WayEnd::Closed {
+            return ArmStatus::None;
+        }
         let is_walled = more >= params.min_wall || less >= params.min_walls;
         let leads_on = width >= params.min_width
             && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
@@ -300,10 +318,6 @@ impl WayGraph {
         if is_arm {
             let UnseenBorder { hidden, aside } = judge.unseen_border(leaf.point);
             // What is seen to end may go on around a corner.
-            let likely = if end.kind == WayEnd::Open { hidden + aside } else { hidden };
-            if likely >= params.border {
-                return ArmStatus::Likely;
-            }
             if hidden + aside >= params.border {
                 return ArmStatus::InDoubt;
             }
@@ -412,7 +426,7 @@ mod tests {
         let params = LaserParams::default();
         let map = Clearances::new(grid.clone());
         let skeleton = Skeleton::new(&map, robot, &params).unwrap();
-        let judge = ArmJudge { robot, map: &map, viewpoints, params: &params.arm };
+        let judge = ArmJudge { map: &map, viewpoints, driven: &[robot], params: &params.arm };
         let ways = WayGraph::new(&skeleton, &map);
         let (graph, _) = ways.pruned(&judge, counted);
         graph.places(&params).iter().map(|place| place.arms.len()).collect()
@@ -459,7 +473,7 @@ mod tests {
             [CountedArms::Seen, CountedArms::SeenOrInDoubt]
                 .map(|counted| degrees(viewpoints, counted, &grid))
         };
-        assert_eq!(seen(&[]), [vec![3], vec![3]], "no scan could see it");
+        assert_eq!(seen(&[]), [vec![], vec![3]], "no scan could see it");
         assert_eq!(seen(&scans(-FRAC_PI_2)), [vec![], vec![3]], "no scan looked there");
         assert_eq!(
             seen(&scans(FRAC_PI_2)),

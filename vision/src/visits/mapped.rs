@@ -16,8 +16,11 @@ use super::{
 use crate::{
     geometry::{direction, distance},
     laser::params::LaserParams,
-    place::{Certainty, PlaceArm, PlaceSensor, PlaceView, SeenPlace, nearest_direction},
+    place::{Certainty, PlaceArm, PlaceView, SeenPlace, nearest_direction},
 };
+
+/// How far one sees on the map of the last view, from a point in a direction and up to a limit, in metres.
+type Sight<'a> = dyn Fn(Point2<f64>, f64, f64) -> f64 + 'a;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct MappedRule<S> {
@@ -132,13 +135,13 @@ impl<S: Copy + Default> MappedRule<S> {
         }
     }
 
-    /// Takes a view, which is the last one of the sensor.
+    /// Takes the next view.
     pub(super) fn add_view(
         &mut self,
         log: &mut VisitLog<S>,
         at: S,
         view: &PlaceView,
-        sensor: &impl PlaceSensor,
+        sight: &Sight<'_>,
     ) {
         let robot = Point2::from(view.robot.position);
         self.behind.get_or_insert(wrapped(view.robot.heading + PI));
@@ -156,7 +159,7 @@ impl<S: Copy + Default> MappedRule<S> {
         self.since.push(robot);
         if self.params.corner.corners {
             for bend in self.bends.add(robot, way, at) {
-                self.pass_bend(&bend, sensor);
+                self.pass_bend(&bend, sight);
             }
         }
         if self.unseen.add(view, &self.params.visit) {
@@ -270,8 +273,8 @@ impl<S: Copy + Default> MappedRule<S> {
     }
 
     /// Adds the stay of a robot that has passed a corner.
-    fn pass_bend(&mut self, bend: &PassedBend<S>, sensor: &impl PlaceSensor) {
-        let (corner, sight) = (&self.params.corner, self.params.arm.sight);
+    fn pass_bend(&mut self, bend: &PassedBend<S>, sight: &Sight<'_>) {
+        let (corner, far) = (&self.params.corner, self.params.arm.sight);
         // The log may begin in a room.
         let is_at_junction =
             self.stay.is_some_and(|stay| distance(stay.centre, bend.point) < corner.arm);
@@ -279,7 +282,7 @@ impl<S: Copy + Default> MappedRule<S> {
             return;
         }
         // A corridor may go straight on there.
-        let goes_on = |back: &f64| sensor.sight(bend.point, *back, sight) >= sight;
+        let goes_on = |back: &f64| sight(bend.point, *back, far) >= far;
         let possible = bend.arms.map(|arm| Some(arm + PI).filter(goes_on));
         let [entry, exit] = bend.arms;
         self.waiting.push_back(Stay {
@@ -342,7 +345,7 @@ impl<S: Copy + Default> MappedRule<S> {
         }
         let doors: Vec<f64> = seen.iter().flat_map(Estimate::doors).collect();
         let possible = self.possible_junctions.at(stay.centre);
-        let possible = possible.filter(|known| known.views_of_meet() >= visit.doubted_views);
+        let possible = possible.filter(|known| known.shows_meet(visit));
         let in_doubt = possible.and_then(|known| {
             let stay = Stay { kind: StayKind::PossibleJunction, ..*stay };
             let mut estimate = self.judge(&stay, &known.arms_of_meet(visit), known.extent(visit));
@@ -489,26 +492,37 @@ impl<S: Copy + Default> MappedRule<S> {
 
     /// Adds a visit, with its arms clockwise from the entry.
     fn push(&self, log: &mut VisitLog<S>, stay: &Stay<S>, estimate: Estimate, entry: Option<f64>) {
-        let doors: Vec<f64> = estimate.doors().collect();
         let Estimate { mut arms, mut doubt, .. } = estimate;
-        if let Some((exit, _)) = stay.exit
-            && doubt.is_none()
-            && !doors.iter().any(|&door| self.is_same(door, exit))
-        {
-            // The robot left by an arm that no view shows, or beside one of those that are shown.
-            arms.push(PlaceArm { direction: exit, certainty: Certainty::Possible });
-            doubt = Some(UndecidedCause::Unclear);
-        }
         // A robot whose log begins at the junction has its back to where it came from.
         let entry = entry.or(self.behind).unwrap_or_default();
-        if let Some(entry) = nearest_direction(&doors, entry).map(|door| doors[door]) {
-            let clockwise = |arm: &PlaceArm| (entry - arm.direction).rem_euclid(TAU);
-            arms.sort_by(|one, other| clockwise(one).total_cmp(&clockwise(other)));
+        let exit = stay.exit.map(|(exit, _)| exit);
+        // The robot drove where it came in and where it left.
+        let ways = [stay.entry, exit].into_iter().flatten();
+        for way in ways.take(if arms.is_empty() { 0 } else { 2 }) {
+            let near = arms.iter_mut().filter(|arm| arm.certainty != Certainty::Excluded);
+            let off = |arm: &PlaceArm| wrapped(arm.direction - way).abs();
+            let nearest = near.min_by(|one, other| off(one).total_cmp(&off(other)));
+            match nearest.filter(|arm| self.is_same(arm.direction, way)) {
+                Some(arm) => arm.certainty = Certainty::Certain,
+                // No view shows the arm, or it is beside one of those that are shown.
+                None => arms.push(PlaceArm { direction: way, certainty: Certainty::Possible }),
+            }
         }
-        let directions: Vec<f64> = arms.iter().map(|arm| arm.direction).collect();
-        let goes_back = stay.exit.is_some_and(|(exit, _)| {
-            let back = nearest_direction(&directions, entry);
-            self.is_same(entry, exit) && nearest_direction(&directions, exit) == back
+        if !arms.is_empty() {
+            let is_open = arms.iter().any(|arm| arm.certainty == Certainty::Possible);
+            doubt = is_open.then(|| doubt.unwrap_or(UndecidedCause::Unclear));
+        }
+        let clockwise = |arm: &PlaceArm| (entry - arm.direction).rem_euclid(TAU);
+        arms.sort_by(|one, other| clockwise(one).total_cmp(&clockwise(other)));
+        let counted = arms.iter().filter(|arm| arm.certainty != Certainty::Excluded);
+        let counted: Vec<f64> = counted.map(|arm| arm.direction).collect();
+        if let Some(first) = nearest_direction(&counted, entry).map(|door| counted[door]) {
+            let first = arms.iter().position(|arm| arm.direction == first).unwrap_or_default();
+            arms.rotate_left(first);
+        }
+        let goes_back = exit.is_some_and(|exit| {
+            let back = nearest_direction(&counted, entry);
+            self.is_same(entry, exit) && nearest_direction(&counted, exit) == back
         });
         let turn = stay.odometry_from_map.rotation.angle();
         for arm in &mut arms {
@@ -519,18 +533,22 @@ impl<S: Copy + Default> MappedRule<S> {
             direction: wrapped(exit + turn),
             off: None,
         });
-        let visit = Visit {
+        let mut visit = Visit {
             at: stay.at,
             centre: stay.odometry_from_map * stay.centre,
             clearance: stay.clearance,
             extent: self.params.visit.radius(stay.clearance),
             arms,
+            came: Some(wrapped(entry + turn)),
             least_degree: if self.params.corner.corners { 1 } else { 3 },
             exit,
             goes_back,
             doubt,
             ..Visit::default()
         };
+        if visit.doubt.is_none() && visit.alternatives().is_empty() {
+            visit.doubt = Some(UndecidedCause::Unclear);
+        }
         let centre = visit.centre;
         log.push(visit, |before| Some(distance(before.centre, centre)));
     }
@@ -548,7 +566,7 @@ mod tests {
     use toposlam_model::driving::odometry::Odometry;
 
     use super::*;
-    use crate::{geometry::unit, place::ViewSector, sensing::SceneSensor, visits::VisitPercept};
+    use crate::{geometry::unit, place::ViewSector, visits::VisitPercept};
 
     /// The visits of a robot that comes from the west to a junction at the origin and leaves in a direction, where one view
     /// in `every` shows arms in these directions.
@@ -569,7 +587,7 @@ mod tests {
                 sector: ViewSector::ALL_AROUND,
                 scene: None,
             };
-            rule.add_view(&mut log, at, &view, &SceneSensor);
+            rule.add_view(&mut log, at, &view, &|_, _, _| 0.0);
         }
         rule.finish(&mut log);
         log.visits

@@ -28,10 +28,28 @@ pub use self::{
 };
 use self::{approach::ApproachRule, mapped::MappedRule};
 use crate::{
-    laser::{params::LaserParams, sensor::LaserSensor},
+    laser::{params::LaserParams, scan_log::ScanLog, sensor::LaserSensor},
     place::{PlaceSensor, PlaceView, SeenPlace},
     sensing::SceneSensor,
 };
+
+/// The visits of a robot by the views of its log, in their order. `at` identifies a scan by its number.
+pub fn logged_visits<S: Copy + Default>(
+    log: &ScanLog,
+    views: impl IntoIterator<Item = PlaceView>,
+    at: impl Fn(usize) -> S,
+) -> VisitLog<S> {
+    let mut params = *log.params();
+    params.visit.views = params.visit.logged_views;
+    let mut rule = MappedRule::new(&params);
+    let mut visits = VisitLog::default();
+    for (number, view) in views.into_iter().enumerate() {
+        let sight = |from, direction, limit| log.sight(number, from, direction, limit);
+        rule.add_view(&mut visits, at(log.scan(number)), &view, &sight);
+    }
+    rule.finish(&mut visits);
+    visits
+}
 
 /// Makes visits of what a sensor sees. `S` identifies a frame.
 #[derive(Clone, Debug)]
@@ -69,7 +87,11 @@ impl<P: PlaceSensor, S: Copy + Default> Visits<P, S> {
         let view = self.sensor.view(frame, odometry)?;
         match &mut self.rule {
             VisitRule::Approach(rule) => rule.add_view(&mut self.log, at, &view),
-            VisitRule::Mapped(rule) => rule.add_view(&mut self.log, at, &view, &self.sensor),
+            VisitRule::Mapped(rule) => {
+                let sensor = &self.sensor;
+                let sight = |from, direction, limit| sensor.sight(from, direction, limit);
+                rule.add_view(&mut self.log, at, &view, &sight);
+            }
         }
         Some(view)
     }

@@ -115,9 +115,11 @@ impl TrackedPlace {
         params.same.max(0.6 * self.clearance)
     }
 
-    /// The number of views that show a junction, and no corner.
-    pub(super) fn views_of_meet(&self) -> usize {
-        self.views.iter().filter(|view| view.len() >= 3).count()
+    /// Whether enough views show a junction, and no corner.
+    pub(super) fn shows_meet(&self, params: &VisitParams) -> bool {
+        let meets = self.views.iter().filter(|view| view.len() >= 3).count();
+        let part = params.doubted_part * self.views.len() as f64;
+        meets >= params.doubted_views && meets as f64 >= part
     }
 
     /// The arms that are seen if it is a junction: the views that show a corner miss it.

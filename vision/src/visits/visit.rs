@@ -30,6 +30,8 @@ pub struct Visit<S> {
     pub extent: f64,
     /// Clockwise from the entry door; empty if nothing is known of the place.
     pub arms: Vec<PlaceArm>,
+    /// The direction to where the robot came in; `None` if that is the first arm.
+    pub came: Option<f64>,
     /// A place with fewer arms is no vertex.
     pub least_degree: usize,
     /// How the robot left; `None` if the log ends there.
@@ -108,7 +110,8 @@ impl<S> VisitLog<S> {
 const MOST_POSSIBLE_ARMS: usize = 8;
 
 impl<S> Visit<S> {
-    /// The percepts that the views cannot exclude, of which `None` is no junction; empty if nothing is known.
+    /// The percepts that the views cannot exclude, of which `None` is no junction; empty if nothing is known. The door is 0
+    /// if the robot left the way that it came, and only then.
     pub fn alternatives(&self) -> Vec<Option<VisitPercept>> {
         let possible = self.arms.iter().filter(|arm| arm.certainty == Certainty::Possible).count();
         if self.arms.is_empty() || possible > MOST_POSSIBLE_ARMS {
@@ -128,7 +131,11 @@ impl<S> Visit<S> {
                 self.arms.iter().filter(is_there).map(|arm| arm.direction).collect();
             (arms.len() >= self.least_degree).then(|| self.percept_with(&arms))
         };
-        let mut all: Vec<_> = (0..1 << possible).map(alternative).collect();
+        let fits = |seen: &Option<VisitPercept>| {
+            let door = seen.and_then(|seen| seen.door);
+            door.is_none_or(|door| (door == 0) == self.goes_back)
+        };
+        let mut all: Vec<_> = (0..1 << possible).map(alternative).filter(fits).collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -140,8 +147,11 @@ impl<S> Visit<S> {
     }
 
     fn percept_with(&self, arms: &[f64]) -> VisitPercept {
-        let door = self.exit.as_ref().and_then(|exit| nearest_direction(arms, exit.direction));
-        VisitPercept { degree: arms.len() as u32, door: door.map(|door| door as u32) }
+        let degree = arms.len();
+        let entry = self.came.and_then(|way| nearest_direction(arms, way)).unwrap_or_default();
+        let exit = self.exit.as_ref().and_then(|exit| nearest_direction(arms, exit.direction));
+        let door = exit.map(|exit| ((exit + degree - entry) % degree) as u32);
+        VisitPercept { degree: degree as u32, door }
     }
 
     /// The directions of the arms that are certain, clockwise from the entry door.

@@ -1,6 +1,6 @@
 //! A walk, sensed with a laser scanner and compared with the truth: each view, and each visit.
 
-use std::f64::consts::TAU;
+use std::{f64::consts::TAU, sync::Arc};
 
 use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose, scene::wrapped},
@@ -8,9 +8,9 @@ use toposlam_model::{
 };
 use toposlam_vision::{
     geometry::{distance, motion_between},
-    laser::params::LaserParams,
+    laser::{params::LaserParams, scan_log::ScanLog},
     place::{PlaceView, SeenPlace},
-    visits::{Visit, Visits},
+    visits::{Visit, logged_visits},
 };
 
 use super::{
@@ -117,7 +117,6 @@ impl WalkSampler {
         let world = CorridorWorld::random(self.buildings, seed);
         let walk = LaserWalk::random(&world, self.places, self.drift, seed);
         let scanner = self.scanner(&world, number, seed);
-        let mut visits = Visits::by_laser(self.sensing);
         let mut judged = JudgedWalk {
             number,
             field_of_view: scanner.params.field_of_view,
@@ -126,15 +125,29 @@ impl WalkSampler {
             junction_views: SampleTally::default(),
             corridor_views: SampleTally::default(),
         };
+        let mut steps = Vec::new();
+        let mut scans = Vec::new();
         for (number, step) in walk.steps.iter().enumerate() {
             if watch.stop() {
                 return None;
             }
             let Ok(scan) = scanner.scan(step.pose, number as u64, step.time) else { continue };
-            let Some(view) = visits.add_frame(number, &scan, &step.odometry) else { continue };
-            judged.add_view(&world, step.pose, &view, self.sensing.visit.range);
+            scans.push((Arc::new(scan), step.odometry));
+            steps.push(number);
         }
-        (judged.visits, judged.invented) = compared(&world, &walk, &visits.finish().visits);
+        let log = ScanLog::new(scans, self.sensing);
+        let mut views = Vec::new();
+        for number in 0..log.len() {
+            if watch.stop() {
+                return None;
+            }
+            let view = log.view(number);
+            let step = &walk.steps[steps[log.scan(number)]];
+            judged.add_view(&world, step.pose, &view, self.sensing.visit.range);
+            views.push(view);
+        }
+        let visits = logged_visits(&log, views, |scan| steps[scan]).visits;
+        (judged.visits, judged.invented) = compared(&world, &walk, &visits);
         Some(judged)
     }
 }

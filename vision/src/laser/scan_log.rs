@@ -1,0 +1,286 @@
+//! The scans of a whole log, and what they show around each place of the robot's way.
+//!
+//! A view of a log is not a view of a robot that drives: the local map holds the scans before it *and* after it, and an arm
+//! is certain if the robot drove it on any pass whose scans agree with the map. What is seen at a place depends on the scans
+//! near it alone, whatever the log shows before, wherever it begins, and however the frame of its odometry lies:
+//!
+//! * which scans are used is decided in the order of a hash of their readings, not from the first one on;
+//! * the cells of each local map begin at the robot, along the walls that its scan shows.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use nalgebra::{Isometry2, Point2, Vector2};
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+
+use super::{
+    drift::{DriftMeter, ROUNDS},
+    grid::floor,
+    matching::ScanMatcher,
+    params::{LaserParams, LocalMapParams},
+    ray_counts::{RayCounts, Rays},
+    scan::Scan,
+    sensor::{LocalMap, LocalView, rays},
+    viewpoint::Viewpoint,
+};
+use crate::{
+    geometry::{from_robot, motion_between, moved},
+    place::{PlaceView, SeenPlace},
+};
+
+/// All scans of a log that are used. Points are in metres in the frame in which they were placed: that of odometry, or of
+/// scan matching if odometry drifts.
+#[derive(Clone, Debug)]
+pub struct ScanLog {
+    params: LaserParams,
+    drift: Option<f64>,
+    scans: Vec<LoggedScan>,
+    /// The scans that were taken in a square, by its column and row.
+    squares: BTreeMap<[i64; 2], Vec<usize>>,
+}
+
+#[derive(Clone, Debug)]
+struct LoggedScan {
+    /// Its number among all scans of the log.
+    number: usize,
+    scan: Arc<Scan>,
+    odometry: Odometry,
+    /// Where the robot was.
+    pose: Odometry,
+    /// The length of the robot's way until then, in metres.
+    way: f64,
+    /// In the robot's frame.
+    rays: Rays,
+}
+
+/// The side of a square, in metres.
+const SQUARE: f64 = 8.0;
+/// Another pass agrees with a local map if at least this part of the hits of its scans, where the map is known, lies ...
+/// Logs: of passes that are a metre off along a corridor, less does; people and doors that were opened are the rest.
+const AGREES: f64 = 0.88;
+/// ... this near to a wall, in cells.
+const NEAR_WALL: i64 = 2;
+/// With fewer hits where the map is known it is not known whether it agrees.
+const LEAST_HITS: usize = 200;
+/// The scans of another pass are this far apart at least, in metres. Geometry: half of a corridor.
+const APART: f64 = 0.9;
+/// More scans beside each other are not compared: a robot that stands still takes many.
+const MOST_BESIDE: usize = 2000;
+
+impl ScanLog {
+    /// The scans of a log in their order, each with the odometry at its time. They are matched with each other if its heading
+    /// drifts by more than [`MatchingParams::max_drift`](super::params::MatchingParams::max_drift).
+    pub fn new(
+        scans: impl IntoIterator<Item = (Arc<Scan>, Odometry)>,
+        mut params: LaserParams,
+    ) -> Self {
+        let all: Vec<(Arc<Scan>, Odometry)> = scans.into_iter().collect();
+        let mut drift = None;
+        if params.matching.rounds == 0 {
+            let mut meter = DriftMeter::new(params);
+            all.iter().for_each(|(scan, odometry)| meter.add_scan(scan, odometry));
+            drift = meter.finish().filter(|&drift| drift > params.matching.max_drift);
+            if drift.is_some() {
+                params.matching.rounds = ROUNDS;
+            }
+        }
+        let mut matcher = ScanMatcher::new(params.matching);
+        let mut log = Self { params, drift, scans: Vec::new(), squares: BTreeMap::new() };
+        let mut way = 0.0;
+        for number in used(&all, &params.map) {
+            let (scan, odometry) = &all[number];
+            way += log.scans.last().map_or(0.0, |last| last.odometry.distance(odometry));
+            let pose = matcher.add_scan(scan, odometry, way, way - params.map.memory);
+            log.squares.entry(square(&pose)).or_default().push(log.scans.len());
+            log.scans.push(LoggedScan {
+                number,
+                scan: Arc::clone(scan),
+                odometry: *odometry,
+                pose,
+                way,
+                rays: rays(scan, &Odometry::default(), &params.map),
+            });
+        }
+        log
+    }
+
+    pub fn params(&self) -> &LaserParams {
+        &self.params
+    }
+
+    /// The drift of the heading of odometry in 10 m, in radians, if scans are matched because of it.
+    pub fn drift(&self) -> Option<f64> {
+        self.drift
+    }
+
+    /// The number of views: of scans that are used.
+    pub fn len(&self) -> usize {
+        self.scans.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.scans.is_empty()
+    }
+
+    /// The number of a view's scan among all scans of the log.
+    pub fn scan(&self, view: usize) -> usize {
+        self.scans[view].number
+    }
+
+    /// What the log shows around the place of a scan.
+    pub fn view(&self, view: usize) -> PlaceView {
+        let LoggedScan { scan, odometry, pose, .. } = &self.scans[view];
+        let log_from_map = self.log_from_map(view);
+        let LocalView { places, possible_places, .. } = self.local_view(view);
+        let on_log = |places: Vec<SeenPlace>| {
+            places.into_iter().map(|place| place.moved(&log_from_map)).collect()
+        };
+        PlaceView {
+            robot: *pose,
+            odometry_from_map: motion_between(pose, odometry),
+            places: on_log(places),
+            possible_places: on_log(possible_places),
+            sector: scan.sector(),
+            scene: None,
+        }
+    }
+
+    /// How far one sees around the place of a scan, from a point in a direction and up to a limit, in metres.
+    pub fn sight(&self, view: usize, from: Point2<f64>, direction: f64, limit: f64) -> f64 {
+        let map_from_log = self.log_from_map(view).inverse();
+        let direction = direction + map_from_log.rotation.angle();
+        let LocalMap { clearances, .. } = self.local_view(view).map;
+        clearances.sight(map_from_log * from, direction, limit).0
+    }
+
+    /// From the local map of a view to the frame of the log. The robot is at the origin of the map.
+    fn log_from_map(&self, view: usize) -> Isometry2<f64> {
+        let LoggedScan { scan, pose, .. } = &self.scans[view];
+        from_robot(&Odometry { heading: pose.heading + scan.direction_of_walls(), ..*pose })
+    }
+
+    fn local_view(&self, view: usize) -> LocalView {
+        let params = &self.params.map;
+        let here = &self.scans[view];
+        let map_from_log = self.log_from_map(view).inverse();
+        let side = params.window();
+        let robot = Point2::origin();
+        // What several views agree on must not depend on how the walls lie in the cells.
+        let corner = Vector2::repeat(if hash(&here.scan) % 2 == 0 { 0.0 } else { 0.5 });
+        let mut counts = RayCounts::around(robot, side + 2, params.cell, corner);
+        let (mut viewpoints, mut driven) = (Vec::new(), Vec::new());
+        let on_pass = |other: &&LoggedScan| (other.way - here.way).abs() <= params.memory;
+        for other in self.scans.iter().filter(on_pass) {
+            let placed = moved(&map_from_log, &other.pose);
+            counts.add(&other.rays.moved(&from_robot(&placed)));
+            viewpoints.push(Viewpoint::new(&other.scan, &placed));
+            driven.push(Point2::from(placed.position));
+        }
+        // Passes are compared with what this one shows, and not with each other.
+        let agreeing: Vec<Vec<(&LoggedScan, Odometry, Rays)>> = self
+            .other_passes(here)
+            .into_iter()
+            .map(|pass| {
+                let place = |other: &'_ LoggedScan| {
+                    let placed = moved(&map_from_log, &other.pose);
+                    other.rays.moved(&from_robot(&placed))
+                };
+                pass.into_iter()
+                    .map(|other| (other, moved(&map_from_log, &other.pose), place(other)))
+                    .collect::<Vec<_>>()
+            })
+            .filter(|pass| agrees(pass.iter().map(|(.., rays)| rays), &counts))
+            .collect();
+        for (other, placed, rays) in agreeing.into_iter().flatten() {
+            counts.add(&rays);
+            viewpoints.push(Viewpoint::new(&other.scan, &placed));
+            driven.push(Point2::from(placed.position));
+        }
+        let grid = counts.window(robot, side, params);
+        LocalView::new(grid, robot, &viewpoints, &driven, &self.params)
+    }
+
+    /// The scans of other passes within the reach of a local map: for each pass the scans without those that are close
+    /// behind another one.
+    fn other_passes(&self, here: &LoggedScan) -> Vec<Vec<&LoggedScan>> {
+        let LocalMapParams { reach, memory, .. } = self.params.map;
+        let steps = (reach / SQUARE).ceil() as i64;
+        let [column, row] = square(&here.pose);
+        let squares = (-steps..=steps)
+            .flat_map(move |x| (-steps..=steps).map(move |y| [column + x, row + y]));
+        let is_other = |other: &LoggedScan| {
+            (other.way - here.way).abs() > memory && other.pose.distance(&here.pose) <= reach
+        };
+        let mut near: Vec<usize> = squares
+            .filter_map(|square| self.squares.get(&square))
+            .flatten()
+            .copied()
+            .filter(|&index| is_other(&self.scans[index]))
+            .collect();
+        near.sort_unstable();
+        let passes = near.chunk_by(|one, next| next - one == 1);
+        let sparse = |pass: &[usize]| {
+            let mut sparse: Vec<&LoggedScan> = Vec::new();
+            for scan in pass.iter().map(|&index| &self.scans[index]) {
+                if sparse.last().is_none_or(|last| scan.way - last.way >= APART) {
+                    sparse.push(scan);
+                }
+            }
+            sparse
+        };
+        passes.map(sparse).collect()
+    }
+}
+
+/// Whether the hits of the scans of a pass lie on the walls of a map.
+fn agrees<'r>(pass: impl Iterator<Item = &'r Rays>, counts: &RayCounts) -> bool {
+    let (mut known, mut on_wall) = (0, 0);
+    for &hit in pass.flat_map(|rays| &rays.hits) {
+        if let Some(is_wall) = counts.is_near_hit(hit, NEAR_WALL) {
+            known += 1;
+            on_wall += usize::from(is_wall);
+        }
+    }
+    known >= LEAST_HITS && on_wall as f64 >= AGREES * known as f64
+}
+
+fn square(pose: &Odometry) -> [i64; 2] {
+    pose.position.map(|at| floor(at / SQUARE))
+}
+
+/// The scans that are used, in their order: none as near to another one as [`LocalMapParams::logged_every`] along the way, and
+/// each other scan that near to one. They are chosen in the order of a hash: which ones are used at a place depends on the
+/// scans around it alone.
+fn used(scans: &[(Arc<Scan>, Odometry)], params: &LocalMapParams) -> Vec<usize> {
+    let is_placed = |index: &usize| is_near_origin(&scans[*index].1);
+    let mut order: Vec<usize> = (0..scans.len()).filter(is_placed).collect();
+    order.sort_by_cached_key(|&index| (hash(&scans[index].0), index));
+    let mut is_used = vec![false; scans.len()];
+    for index in order {
+        let here = &scans[index].1;
+        let is_beside = |other: &usize| {
+            let other = &scans[*other].1;
+            let turned = wrapped(other.heading - here.heading).abs();
+            other.distance(here) < params.logged_every && turned < params.every_turn
+        };
+        let before = (0..index).rev().take(MOST_BESIDE).take_while(is_beside);
+        let after = (index + 1..scans.len()).take(MOST_BESIDE).take_while(is_beside);
+        is_used[index] = !before.chain(after).any(|other| is_used[other]);
+    }
+    (0..scans.len()).filter(|&index| is_used[index]).collect()
+}
+
+/// Odometry beyond this is wrong, in metres; cells near it would have no place.
+const FARTHEST: f64 = 1e7;
+
+/// Whether the odometry is not more than 10,000 km from its origin.
+pub(super) fn is_near_origin(odometry: &Odometry) -> bool {
+    let pose = odometry.position.into_iter().chain([odometry.heading]);
+    pose.into_iter().all(|number| (-FARTHEST..=FARTHEST).contains(&number))
+}
+
+/// The 64-bit FNV-1a hash of the readings of a scan.
+fn hash(scan: &Scan) -> u64 {
+    scan.ranges().iter().fold(0xcbf2_9ce4_8422_2325, |hash, range| {
+        (hash ^ u64::from(range.to_bits())).wrapping_mul(0x0100_0000_01b3)
+    })
+}
