@@ -10,7 +10,7 @@ use toposlam_vision::{
     geometry::{distance, motion_between},
     laser::{params::LaserParams, scan_log::ScanLog},
     place::{PlaceView, SeenPlace},
-    visits::{Visit, logged_visits},
+    visits::{Visit, VisitPercept, logged_visits},
 };
 
 use super::{
@@ -47,6 +47,8 @@ pub struct JudgedWalk {
     /// The visits that were derived where there is no junction: their degrees, and the length of the way, in
     /// metres.
     pub invented: Vec<(u32, f64)>,
+    /// The number of visits that are only possible where there is no junction.
+    pub only_possible: usize,
     /// The views near junctions: undecided if no junction is seen there, wrong if it has other arms.
     pub junction_views: SampleTally,
     /// The views far from junctions: wrong if they show one nevertheless.
@@ -69,6 +71,10 @@ pub struct JudgedLaserVisit {
     /// The derived degree and door, if there are any.
     pub found: Option<(u32, Option<u32>)>,
     pub verdict: LaserVerdict,
+    /// Whether the percept is among those that the scans leave; `None` without a visit.
+    pub in_set: Option<bool>,
+    /// The number of percepts that the scans leave, no junction among them; 0 if they leave any.
+    pub alternatives: usize,
     /// Whether it was derived correctly that the robot had turned back; `None` without a visit.
     pub turning_right: Option<bool>,
 }
@@ -122,6 +128,7 @@ impl WalkSampler {
             field_of_view: scanner.params.field_of_view,
             visits: Vec::new(),
             invented: Vec::new(),
+            only_possible: 0,
             junction_views: SampleTally::default(),
             corridor_views: SampleTally::default(),
         };
@@ -147,68 +154,72 @@ impl WalkSampler {
             views.push(view);
         }
         let visits = logged_visits(&log, views, |scan| steps[scan]).visits;
-        (judged.visits, judged.invented) = compared(&world, &walk, &visits);
+        judged.compare(&world, &walk, &visits);
         Some(judged)
     }
 }
 
-/// Compares the derived visits with the places that the robot passed.
-fn compared(
-    world: &CorridorWorld,
-    walk: &LaserWalk,
-    visits: &[Visit<usize>],
-) -> (Vec<JudgedLaserVisit>, Vec<(u32, f64)>) {
-    let junctions = || walk.passed.iter().filter(|place| place.arms.len() >= 3);
-    let way = |visit: &Visit<usize>| walk.steps.get(visit.at).map_or(0.0, |step| step.way);
-    let percept = |visit: &Visit<usize>| visit.doubt.is_none().then(|| visit.percept());
-    let mut found: Vec<Vec<&Visit<usize>>> = vec![Vec::new(); junctions().count()];
-    let mut invented = Vec::new();
-    // What is undecided is no visit.
-    let mut invent = |visit: &Visit<usize>| {
-        invented.extend(percept(visit).map(|percept| (percept.degree, way(visit))));
-    };
-    for visit in visits {
-        let off = |(_, place): &(usize, &PassedPlace)| (place.way - way(visit)).abs();
-        match nearest(junctions().enumerate(), off).filter(|place| off(place) < NEAR) {
-            Some((number, _)) => found[number].push(visit),
-            None => invent(visit),
+impl JudgedWalk {
+    /// Compares the derived visits with the places that the robot passed.
+    fn compare(&mut self, world: &CorridorWorld, walk: &LaserWalk, visits: &[Visit<usize>]) {
+        let junctions = || walk.passed.iter().filter(|place| place.arms.len() >= 3);
+        let way = |visit: &Visit<usize>| walk.steps.get(visit.at).map_or(0.0, |step| step.way);
+        let percept = |visit: &Visit<usize>| visit.doubt.is_none().then(|| visit.percept());
+        let mut found: Vec<Vec<&Visit<usize>>> = vec![Vec::new(); junctions().count()];
+        let mut others = Vec::new();
+        for visit in visits {
+            let off = |(_, place): &(usize, &PassedPlace)| (place.way - way(visit)).abs();
+            match nearest(junctions().enumerate(), off).filter(|place| off(place) < NEAR) {
+                Some((number, _)) => found[number].push(visit),
+                None => others.push(visit),
+            }
+        }
+        for (place, mut found) in junctions().zip(found) {
+            let (door, degree) = (place.door as u32, place.arms.len() as u32);
+            let first = nearest(0..found.len(), |&index| (place.way - way(found[index])).abs());
+            let first = first.map(|index| found.remove(index));
+            let derived = first.and_then(percept);
+            let verdict = match derived {
+                None if first.is_none() => LaserVerdict::Missed,
+                None => LaserVerdict::Undecided,
+                Some(derived) if derived.degree != degree => LaserVerdict::WrongDegree,
+                Some(derived) if derived.door != Some(door) => LaserVerdict::WrongDoor,
+                Some(_) => LaserVerdict::Right,
+            };
+            // A second visit of one junction is one that did not happen.
+            others.append(&mut found);
+            let alternatives = first.map(Visit::alternatives);
+            let is_true = |seen: &Option<VisitPercept>| {
+                let is_door = |seen: VisitPercept| seen.door.is_none_or(|left| left == door);
+                seen.is_some_and(|seen| seen.degree == degree && is_door(seen))
+            };
+            let in_set = alternatives.as_ref().map(|all| all.is_empty() || all.iter().any(is_true));
+            let widths = place.arms.iter().map(|arm| arm.width);
+            let next = place.arms.iter().cycle().skip(1);
+            let angles = place.arms.iter().zip(next);
+            let angles = angles.map(|(one, other)| clockwise(one.direction, other.direction));
+            self.visits.push(JudgedLaserVisit {
+                degree,
+                is_lobby: world.is_lobby(place.place),
+                widths: [widths.clone().fold(f64::MAX, f64::min), widths.fold(0.0, f64::max)],
+                least_angle: angles.fold(TAU, f64::min),
+                way: place.way,
+                door,
+                found: derived.map(|derived| (derived.degree, derived.door)),
+                verdict,
+                in_set,
+                alternatives: alternatives.map_or(0, |all| all.len()),
+                turning_right: first.map(|visit| visit.turned_back.is_empty() != place.turned_back),
+            });
+        }
+        for visit in others {
+            match percept(visit) {
+                Some(percept) => self.invented.push((percept.degree, way(visit))),
+                None => self.only_possible += 1,
+            }
         }
     }
-    let mut judged = Vec::new();
-    for (place, mut found) in junctions().zip(found) {
-        let (door, degree) = (place.door as u32, place.arms.len() as u32);
-        let first = nearest(0..found.len(), |&index| (place.way - way(found[index])).abs());
-        let first = first.map(|index| found.remove(index));
-        let derived = first.and_then(percept);
-        let verdict = match derived {
-            None if first.is_none() => LaserVerdict::Missed,
-            None => LaserVerdict::Undecided,
-            Some(derived) if derived.degree != degree => LaserVerdict::WrongDegree,
-            Some(derived) if derived.door != Some(door) => LaserVerdict::WrongDoor,
-            Some(_) => LaserVerdict::Right,
-        };
-        // A second visit of one junction is one that did not happen.
-        found.into_iter().for_each(&mut invent);
-        let widths = place.arms.iter().map(|arm| arm.width);
-        let next = place.arms.iter().cycle().skip(1);
-        let angles = place.arms.iter().zip(next);
-        let angles = angles.map(|(one, other)| clockwise(one.direction, other.direction));
-        judged.push(JudgedLaserVisit {
-            degree,
-            is_lobby: world.is_lobby(place.place),
-            widths: [widths.clone().fold(f64::MAX, f64::min), widths.fold(0.0, f64::max)],
-            least_angle: angles.fold(TAU, f64::min),
-            way: place.way,
-            door,
-            found: derived.map(|derived| (derived.degree, derived.door)),
-            verdict,
-            turning_right: first.map(|visit| visit.turned_back.is_empty() != place.turned_back),
-        });
-    }
-    (judged, invented)
-}
 
-impl JudgedWalk {
     /// Compares the junctions in a view, within a range of the robot, with the nearest one that is there.
     fn add_view(&mut self, world: &CorridorWorld, pose: Pose, view: &PlaceView, range: f64) {
         let junctions = (0..world.places.len()).filter(|&place| world.is_junction(place));

@@ -14,6 +14,8 @@ use crate::sample_verdict::{SampleTally, SampleVerdict};
 const WRONG: f64 = 0.01;
 const UNDECIDED: f64 = 0.05;
 const INVENTED: f64 = 0.01;
+/// That of visits whose percept is not among those that the scans leave.
+const OUTSIDE: f64 = 0.005;
 
 type WalkVisit<'w> = (&'w JudgedWalk, &'w JudgedLaserVisit);
 
@@ -30,6 +32,8 @@ pub fn figures(
     let found: SampleTally = visits.iter().map(|(_, visit)| visit.verdict.verdict()).collect();
     let with = |verdict| visits.iter().filter(|(_, visit)| visit.verdict == verdict).count();
     let invented: usize = walks.iter().map(|walk| walk.invented.len()).sum();
+    let outside = visits.iter().filter(|(_, visit)| visit.in_set != Some(true)).count();
+    let possible: usize = walks.iter().map(|walk| walk.only_possible).sum();
     let derived = visits.iter().filter(|(_, visit)| visit.found.is_some()).count() + invented;
     let turned = visits.iter().filter_map(|(_, visit)| visit.turning_right);
     let turned: SampleTally = turned.map(SampleVerdict::right_if).collect();
@@ -50,7 +54,9 @@ pub fn figures(
         ("visit", "degree wrong", with(LaserVerdict::WrongDegree), found.all(), None),
         ("visit", "door wrong", with(LaserVerdict::WrongDoor), found.all(), None),
         ("visit", "undecided", found.undecided, found.all(), Some(UNDECIDED)),
+        ("visit", "not in its set", outside, found.all(), Some(OUTSIDE)),
         ("visit", "invented", invented, derived, Some(INVENTED)),
+        ("visit", "only possible elsewhere", possible, found.all(), None),
         ("visit", "turning back wrong", turned.wrong, turned.all(), None),
         ("walk", "wrong", walked.wrong, walked.all(), None),
         ("walk", "undecided", walked.undecided, walked.all(), None),
