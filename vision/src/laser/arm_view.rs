@@ -36,9 +36,7 @@ const STRAIGHT: f64 = 0.25;
 pub(super) struct ArmView {
     /// Whether free space is seen far enough on one straight line.
     pub is_far: bool,
-    /// How far from the meet point free space is seen on the longest straight line, in metres.
-    pub depth: f64,
-    /// The parts of this line beside which there is a straight wall: on the side with less of it, and on the other one.
+    /// The parts of the longest straight line of free space beside which there is a straight wall: on the side with less of it, and on the other one.
     pub walled: [f64; 2],
 }
 
@@ -63,7 +61,7 @@ impl ArmView {
             line.iter().find(beyond).or(line.last()).map(|&(point, _)| point)
         };
         let Some((mouth, towards)) = behind(MOUTH).zip(behind(AHEAD)) else {
-            return Self { is_far: false, depth: 0.0, walled: [0.0; 2] };
+            return Self { is_far: false, walled: [0.0; 2] };
         };
         let from = if distance(mouth, towards) > 0.5 { mouth } else { meet };
         let ahead = direction(from, towards);
@@ -88,7 +86,7 @@ impl ArmView {
         }
         let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, map));
         walled.sort_by(f64::total_cmp);
-        Self { is_far, depth: length + distance(longest.from, meet), walled }
+        Self { is_far, walled }
     }
 }
 

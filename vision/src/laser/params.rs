@@ -123,29 +123,20 @@ params! {
         /// A way as wide as a corridor that is not seen to end is a possible arm from this length on. Geometry: shorter
         /// ones are niches.
         min_possible: f64 = 4.0,
-        /// An arm counts if free space is seen this far on a straight line from the junction's centre.
+        /// A way counts as an arm if the robot drove it for [`Self::min_arm`], or for this part of what is known of it, if it
+        /// is not seen to end. Geometry: robots cut corners.
+        driven_part: f64 = 0.8,
+        /// It also counts if free space is seen this far on a straight line from the junction's centre, ...
         /// Geometry: what is left to [`Self::min_arm`] are the cells at both ends.
         sight: f64 = 9.5,
-        /// ... beside straight walls on both sides for this part of the line ... Logs: through glass, or the door of a room,
-        /// one sees far, too.
+        /// ... with straight walls on both sides along this part of the line, ... Logs: one sees as far through glass, or the
+        /// door of a room.
         far_walls: f64 = 0.15,
-        /// ... or on one side for this part. Logs.
+        /// ... or on one side along this part. Logs.
         far_wall: f64 = 0.5,
-        /// An arm also counts if the robot drove this part of what is known of it. Geometry: it cuts corners.
-        driven_part: f64 = 0.8,
-        /// An arm of which one sees less than this and that is not seen to end does not count, ... Logs.
-        min_sight: f64 = 2.9,
-        /// ... nor without a straight wall along this part of what is seen on one side, ... Logs, simulated buildings.
-        min_wall: f64 = 0.75,
-        /// ... or along this part on both sides, ... Logs and simulated buildings.
-        min_walls: f64 = 0.17,
-        /// ... if it is known for less than this. Logs and simulated buildings.
-        long: f64 = 6.5,
-        /// Otherwise an arm that is not seen to end counts if it is known for at least this length...  Logs.
-        min_known: f64 = 3.3,
-        /// ... and this far behind the walls of the junction, ... Logs.
+        /// A way that reaches no farther than this behind the walls of the junction is none. Geometry.
         min_behind: f64 = 0.5,
-        /// ... is at least this wide, ... Geometry: the doors of rooms.
+        /// Any other way is a possible arm only if it is at least this wide, ... Geometry: the doors of rooms.
         min_width: f64 = 1.55,
         /// ... at most this wide, ... Geometry: halls.
         max_width: f64 = 2.45,
@@ -153,14 +144,14 @@ params! {
         min_gap: f64 = 0.6,
         /// ... at most this many times its width: otherwise it is a room, seen through a door. Logs.
         max_gap: f64 = 2.1,
-        /// An arm that does not count is in doubt if the scanner did not look at its end: with an unobstructed view, the
-        /// gap there lay this far beyond the field of view, ... Logs and simulated buildings.
+        /// A shorter one is a possible arm if the scanner did not look at its end: with an unobstructed view, the gap there
+        /// lay this far beyond the field of view, ... Logs and simulated buildings.
         unseen_turn: f64 = 0.82,
         /// ... is this many times as wide as the arm, because the edge of the field of view cuts the arm obliquely, ...
         /// Simulated buildings.
         unseen_gap: f64 = 1.3,
         /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower.
-        unseen_width: f64 = 1.76,
+        unseen_width: f64 = 1.5,
         /// An arm narrower than [`Self::min_width`] whose gap is this many times as wide is a room behind a door. Logs.
         room_gap: f64 = 3.5,
         /// Free space that was seen to end goes on nevertheless if a stretch of its border at least this long lies

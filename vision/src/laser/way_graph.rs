@@ -9,10 +9,10 @@ use super::{
     arm_view::ArmView,
     clearances::Clearances,
     ends::{End, WayEnd},
-    grid::{Cell, Grid},
+    grid::Grid,
     params::ArmParams,
     skeleton::Skeleton,
-    viewpoint::{Look, Viewpoint},
+    viewpoint::Viewpoint,
 };
 use crate::{geometry::distance, least_squares::median};
 
@@ -55,9 +55,9 @@ pub(super) enum CountedArms {
 /// Whether a way from a meet point to an end is an arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ArmStatus {
-    /// It is an arm: it is seen far enough, or the robot is there.
+    /// It is an arm: the robot drove it, or it is seen far enough.
     Certain,
-    /// It may be one: the scanner did not look into it, or it is seen to end but for a stretch of its border.
+    /// It may be one: it is as wide as a corridor, and neither driven nor seen to end.
     InDoubt,
     /// It is an alcove, or too little of it is seen.
     None,
@@ -73,19 +73,6 @@ pub(super) struct ArmJudge<'a> {
     pub params: &'a ArmParams,
 }
 
-/// A stretch of border to the unknown at which this number of scans looked is a surface. One ray alone may fail.
-const LOOKS: usize = 2;
-
-/// The border to the unknown near the end of a way, without the stretches at which scans looked: there must be surfaces
-/// of glass, or black ones, or walls along which the rays go.
-#[derive(Clone, Copy, Debug, Default)]
-struct UnseenBorder {
-    /// The length of what no scan could see, because it lies around a corner, in metres.
-    hidden: f64,
-    /// The length of what lay beyond the field of view of the scans, in metres.
-    aside: f64,
-}
-
 impl ArmJudge<'_> {
     /// The length of a middle line that the robot drove, in metres.
     fn driven(&self, line: &[(Point2<f64>, f64)]) -> f64 {
@@ -95,38 +82,6 @@ impl ArmJudge<'_> {
         };
         let pieces = line.windows(2).filter(|two| is_driven(&two[1]));
         pieces.map(|two| distance(two[0].0, two[1].0)).sum()
-    }
-
-    fn unseen_border(&self, end: Point2<f64>) -> UnseenBorder {
-        let (grid, params) = (&self.map.grid, self.params);
-        let is_border = |&at: &usize| self.map.is_unknown_border(at);
-        let mut unseen = UnseenBorder::default();
-        for at in grid.cells_near(end, params.border_near).filter(is_border) {
-            let direct = grid.neighbours(at).into_iter().skip(1).step_by(2);
-            let unknown = direct.filter(|&next| grid.cells[next] == Cell::Unknown);
-            let looks: Vec<Look> = unknown.map(|next| self.look(grid.point(next))).collect();
-            if looks.contains(&Look::At) {
-                continue;
-            }
-            let is_hidden = looks.contains(&Look::Hidden);
-            *(if is_hidden { &mut unseen.hidden } else { &mut unseen.aside }) += grid.cell;
-        }
-        unseen
-    }
-
-    fn look(&self, point: Point2<f64>) -> Look {
-        let (mut at, mut aside) = (0, false);
-        for viewpoint in self.viewpoints {
-            match viewpoint.look(point, self.map) {
-                Look::At => at += 1,
-                Look::Aside => aside = true,
-                Look::Hidden => {}
-            }
-            if at == LOOKS {
-                return Look::At;
-            }
-        }
-        if aside { Look::Aside } else { Look::Hidden }
     }
 }
 
@@ -282,9 +237,8 @@ impl WayGraph {
                 && distance(*point, leaf.point) > 2.0 * params.min_behind / 3.0
         };
         let widths = way.line.iter().filter(is_between).map(|&(_, clearance)| 2.0 * clearance);
-        let width = median(widths.clone()).unwrap_or(2.0 * leaf.clearance);
-        let widest = widths.fold(width, f64::max);
-        let ArmView { is_far, depth, walled: [less, more] } =
+        let width = median(widths).unwrap_or(2.0 * leaf.clearance);
+        let ArmView { is_far, walled: [less, more] } =
             ArmView::new(&way.line, (meet.point, meet.clearance), map, params.sight);
         let has_walls = less >= params.far_walls || more >= params.far_wall;
         if is_far && has_walls {
@@ -303,37 +257,20 @@ impl WayGraph {
         if end.kind == WayEnd::Closed {
             return ArmStatus::None;
         }
-        let is_walled = more >= params.min_wall || less >= params.min_walls;
-        let leads_on = width >= params.min_width
+        // As wide as a corridor; through the door of a room one sees more than its width.
+        let leads_on = (params.min_width..=params.max_width).contains(&width)
             && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
-        let is_arm = leads_on
-            && depth >= params.min_sight
-            && (is_walled || known >= params.long)
-            && known >= params.min_known
-            && widest <= params.max_width;
+        // The door of a room is narrower, and behind it one sees more than its width.
+        let is_door = width < params.min_width && end.gap > params.room_gap * width;
+        let may_lead_on = width <= params.max_width
+            && !is_door
+            && 2.0 * leaf.clearance >= params.unseen_width
+            && end.gap >= params.unseen_gap * width;
         let is_unseen = || {
             let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, map);
             viewpoints.iter().filter_map(turn).any(|turn| turn >= params.unseen_turn)
         };
-        if is_arm {
-            let UnseenBorder { hidden, aside } = judge.unseen_border(leaf.point);
-            // What is seen to end may go on around a corner.
-            if hidden + aside >= params.border {
-                return ArmStatus::InDoubt;
-            }
-        }
-        // A way as wide as a corridor that is not seen to end.
-        if leads_on && width <= params.max_width && known >= params.min_possible {
-            return ArmStatus::InDoubt;
-        }
-        // The door of a room is narrower, and behind it one sees more than its width.
-        let is_door = width < params.min_width && end.gap > params.room_gap * width;
-        if width <= params.max_width
-            && !is_door
-            && 2.0 * leaf.clearance >= params.unseen_width
-            && end.gap >= params.unseen_gap * width
-            && is_unseen()
-        {
+        if leads_on && known >= params.min_possible || may_lead_on && is_unseen() {
             ArmStatus::InDoubt
         } else {
             ArmStatus::None
@@ -393,12 +330,8 @@ impl Skeleton {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
-    use toposlam_model::driving::odometry::Odometry;
-
     use super::*;
-    use crate::laser::{params::LaserParams, scan::Scan};
+    use crate::laser::{grid::Cell, params::LaserParams};
 
     /// A map with walls everywhere but in free rectangles: their first and last columns and rows.
     fn map(columns: usize, rows: usize, free: &[[[usize; 2]; 2]]) -> Grid {
@@ -420,13 +353,13 @@ mod tests {
         Grid { columns, cell: 0.15, origin: [0.0; 2].into(), cells }
     }
 
-    /// The number of arms of each junction on a map, for a robot in the corridor.
-    fn degrees(viewpoints: &[Viewpoint], counted: CountedArms, grid: &Grid) -> Vec<usize> {
+    /// The number of arms of each junction on a map, for a robot in the corridor that drove along these points.
+    fn degrees(driven: &[Point2<f64>], counted: CountedArms, grid: &Grid) -> Vec<usize> {
         let robot = Point2::new(10.0, 2.4);
         let params = LaserParams::default();
         let map = Clearances::new(grid.clone());
         let skeleton = Skeleton::new(&map, robot, &params).unwrap();
-        let judge = ArmJudge { map: &map, viewpoints, driven: &[robot], params: &params.arm };
+        let judge = ArmJudge { map: &map, viewpoints: &[], driven, params: &params.arm };
         let ways = WayGraph::new(&skeleton, &map);
         let (graph, _) = ways.pruned(&judge, counted);
         graph.places(&params).iter().map(|place| place.arms.len()).collect()
@@ -457,28 +390,35 @@ mod tests {
         assert_eq!(block.iter().filter(|&&arms| arms == 3).count(), 2);
     }
 
-    #[test]
-    fn an_alcove_goes_on_around_a_corner_and_is_in_doubt_where_no_wall_was_seen() {
-        // An alcove of 6.6 m. At its end 0.9 m of the wall on the right are unknown.
-        let mut grid = map(266, 70, &[[[1, 264], [10, 22]], [[125, 135], [23, 66]]]);
-        for row in 60..66 {
-            grid.cells[row * grid.columns + 136] = Cell::Unknown;
+    /// A corridor, and a way of so many cells from it whose end is unknown.
+    fn with_way(rows: usize) -> Grid {
+        let high = 23 + rows;
+        let mut grid = map(266, high + 2, &[[[1, 264], [10, 22]], [[125, 135], [23, high]]]);
+        for column in 125..=135 {
+            grid.cells[high * grid.columns + column] = Cell::Unknown;
         }
-        // Two scans of half a circle at the alcove's mouth, by a robot with this heading.
-        let scans = |heading| {
-            let at = Odometry { position: [19.6, 3.5], heading };
-            vec![Viewpoint::new(&Scan::each_degree(-90, 181, |_| 1.0), &at); LOOKS]
-        };
-        let seen = |viewpoints: &[Viewpoint]| {
+        grid
+    }
+
+    #[test]
+    fn a_way_that_is_not_seen_to_end_is_an_arm_if_it_was_driven_or_is_seen_far_and_else_may_be_one()
+    {
+        let arms = |rows: usize, driven: &[Point2<f64>]| {
             [CountedArms::Seen, CountedArms::SeenOrInDoubt]
-                .map(|counted| degrees(viewpoints, counted, &grid))
+                .map(|counted| degrees(driven, counted, &with_way(rows)))
         };
-        assert_eq!(seen(&[]), [vec![], vec![3]], "no scan could see it");
-        assert_eq!(seen(&scans(-FRAC_PI_2)), [vec![], vec![3]], "no scan looked there");
-        assert_eq!(
-            seen(&scans(FRAC_PI_2)),
-            [vec![], vec![3]],
-            "there is no wall that the scans saw"
-        );
+        let none = Vec::<usize>::new();
+        assert_eq!(arms(70, &[]), [vec![3], vec![3]], "10.5 m are seen");
+        assert_eq!(arms(40, &[]), [none.clone(), vec![3]], "6 m are seen");
+        assert_eq!(arms(12, &[]), [none.clone(), none.clone()], "a niche");
+        let along: Vec<_> =
+            (0..10).map(|metre| Point2::new(19.6, 2.4 + f64::from(metre))).collect();
+        assert_eq!(arms(40, &along), [vec![3], vec![3]], "all of it was driven");
+        assert_eq!(arms(40, &along[..3]), [none.clone(), vec![3]], "the robot looked into it");
+        let mut closed = with_way(40);
+        for column in 125..=135 {
+            closed.cells[63 * closed.columns + column] = Cell::Occupied;
+        }
+        assert_eq!(degrees(&along, CountedArms::SeenOrInDoubt, &closed), none, "a room");
     }
 }
