@@ -123,8 +123,8 @@ fn derived<'a>(
     params: &LaserParams,
 ) -> (Vec<Visit>, usize) {
     let log = ScanLog::new(scans.map(|(scan, odometry)| (Arc::clone(scan), odometry)), *params);
-    let views = (0..log.len()).map(|view| log.view(view));
-    let mut visits = logged_visits(&log, views, |_| ()).visits;
+    let views: Vec<_> = (0..log.len()).map(|view| log.view(view)).collect();
+    let mut visits = logged_visits(&log, &views, |_| ()).visits;
     let all = visits.len();
     visits.retain(|visit| visit.doubt.is_none());
     let undecided = all - visits.len();

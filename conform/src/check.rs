@@ -193,9 +193,9 @@ impl LogCheck<'_> {
             (error, _) => CheckError::Judge(error),
         })?;
         let judgement = match &extracted {
-            ExtractedRun { evidence: Evidence::Laser, junctions, .. } => {
+            ExtractedRun { evidence: Evidence::Laser, junctions, network, .. } => {
                 let possible = PossibleVisits::judge(&complete, junctions, &config, watch);
-                judgement.with_possible(possible)
+                judgement.with_possible(possible.in_building(network.unwrap_or_default()))
             }
             ExtractedRun { got_lost: true, .. } => judgement.accusing_nobody(Unproved::Lost),
             _ => judgement,

@@ -18,7 +18,7 @@ use toposlam_model::{
 };
 use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
-    laser::{params::LaserParams, scan_log::ScanLog},
+    laser::{network_fit::NetworkFit, params::LaserParams, scan_log::ScanLog},
     sensing::Sensor,
     visits::{APPROACH_RANGE, VisitLog, Visits, logged_visits},
 };
@@ -78,6 +78,8 @@ pub struct ExtractedRun {
     pub field_of_view: f64,
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
     pub drift: Option<f64>,
+    /// How well a network of corridors describes the building, by laser scans.
+    pub network: Option<NetworkFit>,
     /// The junctions of the events that are inferred from laser scans.
     pub junctions: Vec<VisitedJunction>,
     /// The sightings of a marker that is a fiducial.
@@ -249,9 +251,9 @@ pub fn extract(
             infer_events(&run.seen, marked)
         }
         Evidence::Laser => {
-            let (visits, drift) = laser_visits(scans, laser, watch);
+            let (visits, drift, network) = laser_visits(scans, laser, watch);
             let (events, junctions) = visit_events(visits);
-            (run.junctions, run.drift) = (junctions, drift);
+            (run.junctions, run.drift, run.network) = (junctions, drift, Some(network));
             events
         }
     };
@@ -259,12 +261,12 @@ pub fn extract(
 }
 
 /// The visits of a laser log, and the drift of the heading of its odometry in 10 m, in radians, if its scans are matched
-/// because of it.
+/// because of it; and whether the building is a network of corridors.
 fn laser_visits(
     scans: Vec<PlacedScan>,
     params: LaserParams,
     watch: &impl Watch,
-) -> (VisitLog<EventSource>, Option<f64>) {
+) -> (VisitLog<EventSource>, Option<f64>, NetworkFit) {
     let mut last = 0;
     let sources: Vec<EventSource> = scans
         .iter()
@@ -284,7 +286,9 @@ fn laser_visits(
         watch.part_done((scans - done) as u64);
         done = scans;
     }
-    (logged_visits(&log, views, |scan| sources[scan]), log.drift())
+    let visits = logged_visits(&log, &views, |scan| sources[scan]);
+    let network = NetworkFit::new(&views, &visits, &params.network);
+    (visits, log.drift(), network)
 }
 
 /// Whether an entry shows where the robot was at its time.

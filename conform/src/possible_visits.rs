@@ -13,7 +13,7 @@ use toposlam_model::{
     },
     world::State,
 };
-use toposlam_vision::visits::VisitPercept;
+use toposlam_vision::{laser::network_fit::NetworkFit, visits::VisitPercept};
 
 use super::{
     config::{ConformConfig, RunDriver},
@@ -23,7 +23,7 @@ use super::{
 };
 
 /// The visits of a log, and whether some choice of their percepts fits.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PossibleVisits {
     pub visits: usize,
     /// Those of which the scans leave one percept.
@@ -31,6 +31,8 @@ pub struct PossibleVisits {
     /// Those of which the scans leave several percepts and the known world one, counted from 0.
     pub decided_by_world: Vec<usize>,
     pub fit: VisitFit,
+    /// Whether the building is a network of corridors at all.
+    pub network: NetworkFit,
     /// Where the robot may be after the last visit in the known world.
     #[serde(skip)]
     pub(super) states: Vec<State>,
@@ -103,20 +105,30 @@ impl PossibleVisits {
         judged
     }
 
+    pub(super) fn in_building(self, network: NetworkFit) -> Self {
+        Self { network, ..self }
+    }
+
     /// Whether so many visits are certain that a choice that fits says something.
     pub fn is_certain_enough(&self) -> bool {
         let [least, of] = CERTAIN_PART;
         self.visits > 0 && of * self.certain >= least * self.visits
     }
 
-    /// Whether they decide nothing: no choice fits, or any visits of such a robot would.
+    /// Whether they decide nothing: the building is no network of corridors, no choice fits, or any visits of such a robot
+    /// would.
     pub(super) fn says_nothing(&self) -> bool {
-        self.fit == VisitFit::Contradiction || self.by_anyone && self.fit == VisitFit::Anything
+        self.network.fault.is_some()
+            || self.fit == VisitFit::Contradiction
+            || self.by_anyone && self.fit == VisitFit::Anything
     }
 
     /// Whether the visits conform, as sets.
     pub(super) fn conform(&self) -> bool {
-        self.by_anyone && self.fit == VisitFit::Fits && self.is_certain_enough()
+        self.by_anyone
+            && self.network.fault.is_none()
+            && self.fit == VisitFit::Fits
+            && self.is_certain_enough()
     }
 }
 

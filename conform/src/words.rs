@@ -11,6 +11,7 @@ use toposlam_model::{
     percept::{Percept, Sighting},
     trace::{Departure, MatchedChoices, MisfitReason, TraceEventKind},
 };
+use toposlam_vision::laser::network_fit::{NetworkFault, NetworkFit};
 
 use super::{
     config::RunDriver,
@@ -219,6 +220,7 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
             remarks.push(cause.to_owned());
         }
     }
+    remarks.extend(facts.possible.as_ref().and_then(|visits| no_network(&visits.network)));
     remarks.extend(facts.contradiction.as_ref().map(unproved));
     remarks.extend(facts.possible.as_ref().and_then(|visits| possible(visits, report)));
     if let Some((event, why)) = facts.unrecognised
@@ -268,6 +270,21 @@ fn unproved(divergence: &UnprovedDivergence) -> String {
         }
     };
     format!("event {number} does not fit: {found}; {cause}. This accuses nobody: {why}")
+}
+
+/// Why the building is no network of corridors.
+fn no_network(network: &NetworkFit) -> Option<String> {
+    let why = match network.fault? {
+        NetworkFault::Wide => {
+            let part = (100.0 * network.wide).round();
+            format!("on {part} % of the robot's way free space is wider than a corridor")
+        }
+        NetworkFault::ManyDoors => {
+            let visits = counted(network.many_doors, "visit");
+            format!("{visits} may be of places with more doors than a junction of corridors has")
+        }
+    };
+    Some(format!("this building is not a network of corridors: {why}"))
 }
 
 /// The visits of a laser log that are not certain, and whether some choice of their percepts fits.

@@ -38,6 +38,8 @@ pub struct PlaceView {
     /// The same if the arms in doubt are arms, too: those that the sensor did not look into.
     pub possible_places: Vec<SeenPlace>,
     pub sector: ViewSector,
+    /// The width of the way in which the robot is, between its walls, in metres; `None` by a camera, or if it is in no way.
+    pub width: Option<f64>,
     /// What the places are read from, by a camera.
     pub scene: Option<Scene>,
 }

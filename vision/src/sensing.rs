@@ -64,6 +64,7 @@ impl PlaceSensor for SceneSensor {
             possible_places: places.clone(),
             places,
             sector: ViewSector::ALL_AROUND,
+            width: None,
             scene: Some(scene.clone()),
         })
     }

@@ -13,7 +13,8 @@
 //! * `arm_view`: how far one sees along an arm, and beside which walls; `viewpoint`: where no scan looked;
 //! * [`way_graph`]: its meet points and the arms that count, and `junctions`: junctions, corners and dead ends;
 //! * [`sensor`]: all of these steps, live, and [`pictures`] of them;
-//! * [`scan_log`]: the same of a log, by all of its scans.
+//! * [`scan_log`]: the same of a log, by all of its scans;
+//! * [`network_fit`]: whether a building is a network of corridors at all.
 //!
 //! [`scene`] is another way, for the small buildings with right angles of Algorithm 2.
 
@@ -26,6 +27,7 @@ mod ends;
 mod grid;
 mod junctions;
 mod matching;
+pub mod network_fit;
 pub mod params;
 pub mod pictures;
 mod ray_counts;

@@ -37,6 +37,8 @@ params! {
         corner: CornerParams = CornerParams::DEFAULT,
         /// Visits of junctions.
         visit: VisitParams = VisitParams::DEFAULT,
+        /// Whether a building is a network of corridors.
+        network: NetworkParams = NetworkParams::DEFAULT,
     }
 
     /// Scan matching: where a scan was taken, by odometry and by the walls of earlier scans.
@@ -239,6 +241,21 @@ params! {
         /// is manoeuvring.
         unseen_way: f64 = 2.0,
     }
+
+    /// What is no network of corridors.
+    NetworkParams {
+        /// A corridor is at most this wide. Logs: those of networks are at most 3.5 m wide, but for their lobbies.
+        widest: f64 = 4.0,
+        /// If free space is wider on more than this part of the robot's way, the building is no network of corridors. Logs:
+        /// it is on 0 to 5 % of the way in three networks, and on 39 to 79 % in a castle and two halls.
+        wide_part: f64 = 0.2,
+        /// Junctions of corridors have fewer doors than this. Geometry: five ways or more meet in halls.
+        many_doors: usize = 5 => 3.0..=100.0,
+        /// If at least so many visits are of places with more doors, ... Logs.
+        many_visits: usize = 3,
+        /// ... and at least this part of them, the building is no network of corridors. Logs.
+        many_part: f64 = 0.34,
+    }
 }
 
 impl LocalMapParams {
@@ -288,7 +305,7 @@ mod tests {
 
     const ERRORS: &str = r#"
 [arm]\nmin = 2.0 | line 2, column 1: arm.min: unknown key; expected one of: min_arm,
-min_arm = 2.0 | line 1, column 1: min_arm: unknown key; expected one of: matching, map, arm, corner, visit
+min_arm = 2.0 | line 1, column 1: min_arm: unknown key; expected one of: matching, map, arm, corner, visit, network
 [arm]\nmin_arm = "far" | line 2, column 11: arm.min_arm: expected a number, found a text
 [arm]\nmin_arm = -1.0 | line 2, column 11: arm.min_arm: -1 is out of range; this parameter lies between 0 and 1000
 [arm]\nmin_arm = nan | line 2, column 11: arm.min_arm: NaN is out of range; this parameter lies between 0 and 1000

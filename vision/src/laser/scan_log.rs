@@ -130,7 +130,7 @@ impl ScanLog {
     pub fn view(&self, view: usize) -> PlaceView {
         let LoggedScan { scan, odometry, pose, .. } = &self.scans[view];
         let log_from_map = self.log_from_map(view);
-        let LocalView { places, possible_places, .. } = self.local_view(view);
+        let LocalView { places, possible_places, width, .. } = self.local_view(view);
         let on_log = |places: Vec<SeenPlace>| {
             places.into_iter().map(|place| place.moved(&log_from_map)).collect()
         };
@@ -140,6 +140,7 @@ impl ScanLog {
             places: on_log(places),
             possible_places: on_log(possible_places),
             sector: scan.sector(),
+            width,
             scene: None,
         }
     }

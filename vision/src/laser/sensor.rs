@@ -61,6 +61,8 @@ pub(super) struct LocalView {
     pub places: Vec<SeenPlace>,
     /// The same if arms in doubt are arms, too.
     pub possible_places: Vec<SeenPlace>,
+    /// See [`PlaceView::width`].
+    pub width: Option<f64>,
 }
 
 /// Corners of cells, in cells from the origin. Successive views take them in turn: what several views agree on must not
@@ -132,7 +134,7 @@ impl PlaceSensor for LaserSensor {
         let grid = counts.window(position, side, &params);
         let viewpoints = self.viewpoints.make_contiguous();
         let driven: Vec<_> = viewpoints.iter().map(Viewpoint::point).collect();
-        let LocalView { map, places, possible_places } =
+        let LocalView { map, places, possible_places, width } =
             LocalView::new(grid, position, viewpoints, &driven, &self.params);
         self.map = Some(map);
         Some(PlaceView {
@@ -141,6 +143,7 @@ impl PlaceSensor for LaserSensor {
             places,
             possible_places,
             sector: scan.sector(),
+            width,
             scene: None,
         })
     }
@@ -173,7 +176,9 @@ impl LocalView {
         } else {
             places.clone()
         };
-        Self { map: LocalMap { clearances, skeleton, graph }, places, possible_places }
+        let width =
+            skeleton.as_ref().and_then(|ways| ways.width_at(robot, &clearances, &params.map));
+        Self { map: LocalMap { clearances, skeleton, graph }, places, possible_places, width }
     }
 }
 

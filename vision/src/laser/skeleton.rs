@@ -8,7 +8,7 @@ use super::{
     clearances::Clearances,
     ends::{End, ends, way_lengths},
     grid::{Cell, Grid},
-    params::LaserParams,
+    params::{LaserParams, LocalMapParams},
 };
 
 /// The cells in the middle of the ways that the robot can take.
@@ -33,6 +33,17 @@ impl Skeleton {
         let ends = ends(&ways, &lengths, map, params);
         thin(&mut cells, &ways, &ends, map);
         Some(Self { cells, ends })
+    }
+
+    /// The width of the way in which a robot is, between its walls, in metres.
+    pub(super) fn width_at(
+        &self,
+        robot: Point2<f64>,
+        map: &Clearances,
+        params: &LocalMapParams,
+    ) -> Option<f64> {
+        let at = nearest(&self.cells, &map.grid, robot, params.reach)?;
+        Some(2.0 * f64::from(map.wall[at]).sqrt() * map.grid.cell)
     }
 }
 

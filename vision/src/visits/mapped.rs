@@ -585,6 +585,7 @@ mod tests {
                 possible_places: places.clone(),
                 places,
                 sector: ViewSector::ALL_AROUND,
+                width: None,
                 scene: None,
             };
             rule.add_view(&mut log, at, &view, &|_, _, _| 0.0);

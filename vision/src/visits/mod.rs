@@ -36,16 +36,16 @@ use crate::{
 /// The visits of a robot by the views of its log, in their order. `at` identifies a scan by its number.
 pub fn logged_visits<S: Copy + Default>(
     log: &ScanLog,
-    views: impl IntoIterator<Item = PlaceView>,
+    views: &[PlaceView],
     at: impl Fn(usize) -> S,
 ) -> VisitLog<S> {
     let mut params = *log.params();
     params.visit.views = params.visit.logged_views;
     let mut rule = MappedRule::new(&params);
     let mut visits = VisitLog::default();
-    for (number, view) in views.into_iter().enumerate() {
+    for (number, view) in views.iter().enumerate() {
         let sight = |from, direction, limit| log.sight(number, from, direction, limit);
-        rule.add_view(&mut visits, at(log.scan(number)), &view, &sight);
+        rule.add_view(&mut visits, at(log.scan(number)), view, &sight);
     }
     rule.finish(&mut visits);
     visits

@@ -153,7 +153,7 @@ impl WalkSampler {
             judged.add_view(&world, step.pose, &view, self.sensing.visit.range);
             views.push(view);
         }
-        let visits = logged_visits(&log, views, |scan| steps[scan]).visits;
+        let visits = logged_visits(&log, &views, |scan| steps[scan]).visits;
         judged.compare(&world, &walk, &visits);
         Some(judged)
     }
