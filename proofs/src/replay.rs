@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::choose::{CaseResult, Choose, Exhibit, unless_it_panics};
+use crate::choose::{CaseResult, Choose, Exhibit, Stop, unless_it_panics};
 
 /// Makes one case again, from a list of choices, and keeps its exhibits.
 #[derive(Clone, Debug, Default)]
@@ -56,6 +56,16 @@ pub struct ReplayedCase {
     pub case: CaseResult,
     /// What was chosen, as the lemma shows it.
     pub exhibits: Vec<Exhibit>,
+}
+
+impl ReplayedCase {
+    /// The claim that does not hold.
+    pub fn claim(&self) -> Option<&'static str> {
+        match self.case {
+            Err(Stop::Fails(claim)) => Some(claim),
+            Ok(()) | Err(Stop::Excluded) => None,
+        }
+    }
 }
 
 impl CaseReplay {
