@@ -143,7 +143,6 @@ impl LogReader {
         fields.filter(|(_, text)| !text.is_empty()).into_py_dict(py)
     }
 
-    /// Reads the tables.
     fn tables(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<Tables> {
         let read = run_watched(py, progress, None, |watcher| self.read(watcher))?;
         let read = read.map_err(|cause| self.error(py, &cause))?;

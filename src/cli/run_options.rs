@@ -53,7 +53,6 @@ pub(super) struct RunOptions {
     pub(super) json: bool,
 }
 
-/// A limit of a run.
 #[derive(Clone, Copy, Debug)]
 enum RunLimit {
     Budget(BudgetLimit),

@@ -115,7 +115,7 @@ pub(super) struct SimulateArguments {
 }
 
 /// Options of rendered images, which neither --by-scene nor --sensor laser makes.
-const OF_IMAGES: [&str; 6] = ["calibration", "size", "colours", "look", "effects", "effect"];
+const OF_IMAGES: [&str; 5] = ["calibration", "size", "colours", "look", "effect"];
 
 /// Options that need a run; --ros serves the robot instead. All are named: clap drops the requirement of an option
 /// that conflicts.
@@ -467,9 +467,9 @@ mod tests {
             ),
             (
                 "a.toml --seed 7 --fault carried@40 --audit --fault dropped@3:9 --size 1280x960 \
-                 --effects none --effect noise=0.25 --algorithm algorithm1 --budget 20darts",
-                "a.toml --algorithm algorithm1 --audit=1 --budget 20darts --effect noise=0.25 \
-                 --effects none --fault carried@40 --fault dropped@3:9 --seed 7 --size 1280x960",
+                 --effect none --effect noise=0.25 --algorithm algorithm1 --budget 20darts",
+                "a.toml --algorithm algorithm1 --audit=1 --budget 20darts --effect none \
+                 --effect noise=0.25 --fault carried@40 --fault dropped@3:9 --seed 7 --size 1280x960",
             ),
             (
                 "a.toml --scanner it's.toml --sensor laser",

@@ -18,17 +18,15 @@ struct VersionedLine<'c, C> {
     content: &'c C,
 }
 
-fn line_text(kind: &'static str, content: &impl Serialize) -> io::Result<String> {
-    Ok(serde_json::to_string(&VersionedLine { schema: SCHEMA, kind, content })?)
-}
-
 /// Prints an object on a line of its own, after its version and its kind.
 pub fn print_line(
     out: &mut dyn Write,
     kind: &'static str,
     content: &impl Serialize,
 ) -> Result<(), CliError> {
-    Ok(writeln!(out, "{}", line_text(kind, content)?)?)
+    let line = VersionedLine { schema: SCHEMA, kind, content };
+    let line = serde_json::to_string(&line).map_err(io::Error::from)?;
+    Ok(writeln!(out, "{line}")?)
 }
 
 /// Where a log ends before its end.

@@ -110,7 +110,6 @@ impl<'w> RobotComparison<'w> {
         }
     }
 
-    /// The names of the worlds.
     pub(super) fn names(&self) -> [&'w str; 2] {
         self.worlds.map(|world| world.name.as_str())
     }

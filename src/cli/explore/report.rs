@@ -147,7 +147,6 @@ impl<'a> ExploredWorld<'a> {
         self.mapped.as_ref().filter(|mapped| !mapped.audited_percepts.is_empty())
     }
 
-    /// All moves.
     fn moves(&self) -> u64 {
         self.journey.moves() + self.audited().map_or(0, |mapped| mapped.audit_moves)
     }
