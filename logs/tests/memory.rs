@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
-#[path = "../../tests/peak.rs"]
+#[path = "../../tests/memory/peak.rs"]
 #[expect(dead_code, reason = "it is for readers of one kind of file, too")]
 mod peak;
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
-#[path = "../../tests/peak.rs"]
+#[path = "../../tests/memory/peak.rs"]
 mod peak;
 
 use std::iter;

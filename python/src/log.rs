@@ -11,7 +11,6 @@ use pyo3::{
 };
 use toposlam_draw::picture::{LaserRunPicture, laser_run_svg};
 use toposlam_logs::{
-    Format,
     entries::{Content, Entry},
     error::LogError,
     messages::Run,
@@ -97,17 +96,9 @@ impl LogReader {
         Ok(Self { path, log, mapping, run })
     }
 
-    /// The format, in words.
     #[getter]
     fn format(&self) -> &'static str {
-        match self.log.format() {
-            Format::Bag => "bag",
-            Format::Mcap => "mcap",
-            Format::Carmen => "carmen",
-            Format::Events => "events",
-            Format::Database => "db3",
-            Format::Folder => "rosbag2",
-        }
+        self.log.format().name()
     }
 
     /// Each topic: its name, its type and the number of its messages.
