@@ -58,9 +58,10 @@ impl ReplayedCase {
             shown.push(match exhibit {
                 Exhibit::World { graph, facing } => {
                     let number = worlds.len() + 1;
-                    let (name, label) = match is_only_one {
-                        true => ("case".to_owned(), "the world".to_owned()),
-                        false => (format!("case-{number}"), format!("world {number}")),
+                    let (name, label) = if is_only_one {
+                        ("case".to_owned(), "the world".to_owned())
+                    } else {
+                        (format!("case-{number}"), format!("world {number}"))
                     };
                     let about = format!("A case of {lemma}");
                     let world = NamedWorld::numbered(&name, &about, graph, Some(facing));

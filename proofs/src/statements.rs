@@ -32,16 +32,12 @@ pub struct StatementCounts {
 /// A name that is not one of a lemma.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LemmaNameError {
-    #[error("there is no lemma `{name}`; there are:{}", listed(lemmas))]
+    #[error("there is no lemma `{name}`; there are:\n  {}", lemmas.join("\n  "))]
     Unknown { name: String, lemmas: Vec<&'static str> },
-    #[error("`{name}` is part of several names:{}", listed(lemmas))]
+    #[error("`{name}` is part of several names:\n  {}", lemmas.join("\n  "))]
     Ambiguous { name: String, lemmas: Vec<&'static str> },
     #[error("{name} is proved in Coq, for every world; run proofs/coq/check to check it")]
     Theorem { name: String },
-}
-
-fn listed(names: &[&str]) -> String {
-    names.iter().map(|name| format!("\n  {name}")).collect()
 }
 
 impl Statements<'static> {
