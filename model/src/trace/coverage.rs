@@ -40,12 +40,6 @@ impl AlgorithmCoverage {
         self.counts.get(&case).copied().unwrap_or(0)
     }
 
-    pub fn include(&mut self, other: &Self) {
-        for (&case, count) in &other.counts {
-            *self.counts.entry(case).or_default() += count;
-        }
-    }
-
     fn add(&mut self, case: AlgorithmCase, count: u64) {
         if count > 0 {
             *self.counts.entry(case).or_default() += count;
@@ -118,9 +112,6 @@ mod tests {
         let counts = AlgorithmCase::ALL.map(|case| coverage.count(case));
         assert_eq!(counts, [3, 1, 2, 0, 0, 1, 0], "{coverage:?}");
         assert_eq!(coverage.counts.len(), 4);
-        let mut twice = coverage.clone();
-        twice.include(&coverage);
-        assert_eq!(AlgorithmCase::ALL.map(|case| twice.count(case)), counts.map(|count| 2 * count));
     }
 
     #[test]

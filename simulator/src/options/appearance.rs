@@ -21,14 +21,6 @@ pub enum ImageSize {
 }
 
 impl ImageSize {
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Small => "640x480",
-            Self::Large => "1280x960",
-        }
-    }
-
     /// Width and height.
     pub fn pixels(self) -> [u32; 2] {
         match self {
