@@ -88,7 +88,6 @@ impl Stage {
     }
 }
 
-/// The lines of a kind.
 fn lines_of<'t>(text: &'t str, kind: &str) -> Vec<&'t str> {
     let kind = format!("{{\"schema\":1,\"kind\":\"{kind}\",");
     text.lines().filter(|line| line.starts_with(&kind)).collect()

@@ -38,7 +38,6 @@ fn targets() -> Vec<FuzzTarget> {
     proofs.chain(vision).chain(logs).collect()
 }
 
-/// The names in a folder.
 fn names_in(folder: &str) -> BTreeSet<String> {
     let entries = fs::read_dir(repository(folder)).unwrap();
     entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()

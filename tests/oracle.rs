@@ -57,7 +57,6 @@ fn the_moves_the_runs_and_the_certificates_are_the_same() {
     }
 }
 
-/// A list of numbers.
 fn numbers(list: &Value) -> Vec<u32> {
     list.as_array().unwrap().iter().map(|number| number.as_u64().unwrap() as u32).collect()
 }

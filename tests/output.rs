@@ -33,7 +33,6 @@ pub(crate) fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The names in a folder.
 pub(crate) fn names_in(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -64,7 +63,6 @@ impl Schema {
         self.validator.validate(line).err().map(|error| error.to_string())
     }
 
-    /// The kinds of lines.
     pub(crate) fn kinds(&self) -> BTreeSet<&str> {
         let lines = self.text["oneOf"].as_array().unwrap().iter();
         lines.map(|line| line["properties"]["kind"]["const"].as_str().unwrap()).collect()

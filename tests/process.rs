@@ -33,7 +33,6 @@ impl Process {
         signal(self.0.as_ref().unwrap(), name);
     }
 
-    /// Waits for its end.
     pub(crate) fn ends(mut self) -> Output {
         self.0.take().unwrap().wait_with_output().unwrap()
     }

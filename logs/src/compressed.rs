@@ -17,10 +17,11 @@ impl<S: Read + Seek + Send> Storage for S {}
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTANDARD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FileCompression {
-    Gzip,
-    Zstandard,
+toposlam_model::words! {
+    FileCompression {
+        Gzip = "gzip",
+        Zstandard = "zstd",
+    }
 }
 
 impl FileCompression {
@@ -29,13 +30,6 @@ impl FileCompression {
             head if head.starts_with(GZIP) => Some(Self::Gzip),
             head if head.starts_with(ZSTANDARD) => Some(Self::Zstandard),
             _ => None,
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gzip => "gzip",
-            Self::Zstandard => "zstd",
         }
     }
 }

@@ -33,21 +33,13 @@ impl LogError {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum OffsetUnit {
-    #[default]
-    Byte,
-    Line,
-    Row,
-}
-
-impl OffsetUnit {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Byte => "byte",
-            Self::Line => "line",
-            Self::Row => "row",
-        }
+toposlam_model::words! {
+    #[derive(Default)]
+    OffsetUnit {
+        #[default]
+        Byte = "byte",
+        Line = "line",
+        Row = "row",
     }
 }
 

@@ -1,35 +1,27 @@
-//! Readers of logs, messages and topic maps stay within their memory limits, whatever the bytes. The allocator of the
-//! whole process is measured, so this is a separate program with one test.
+//! Readers of logs, messages and topic maps stay within their memory limits, whatever the bytes.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+#[path = "../../tests/memory/peak.rs"]
+#[expect(dead_code, reason = "it is for readers of one kind of file, too")]
+mod peak;
 
 use std::{
     collections::BTreeMap,
     fs,
-    hint::black_box,
     io::{Cursor, Write},
     path::Path,
 };
 
 use flate2::{Compression, write::GzEncoder};
 use mcap::{WriteOptions, records::MessageHeader};
-use peak_alloc::PeakAlloc;
+use peak::{keep, peak};
 use toposlam_logs::{
     decode::decode,
     definition::{Definition, Dialect},
     reader::Log,
     topic_map::TopicMap,
 };
-
-#[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
-
-fn peak(run: impl FnOnce()) -> usize {
-    let before = MEMORY.current_usage();
-    MEMORY.reset_peak_usage();
-    run();
-    MEMORY.peak_usage().saturating_sub(before)
-}
 
 /// What it takes, which is no more than this.
 fn peak_within(most: usize, run: impl FnOnce()) -> usize {
@@ -43,36 +35,28 @@ fn log_holds(bytes: &[u8]) -> usize {
     peak_within(1101 * bytes.len() + (32 << 20), || {
         // It is in memory twice.
         if let Ok(log) = Log::of_bytes(bytes.to_vec()) {
-            for message in log.read_all() {
-                let _ = black_box(message.map_err(|error| error.to_string()));
-            }
+            log.read_all().for_each(keep);
         }
     })
 }
 
 fn definition_holds(dialect: Dialect, text: &str) {
-    peak_within(256 * (text.len() + 3) + 4096, || {
-        let read = Definition::read(dialect, "a/A", text);
-        let _ = black_box(read.map_err(|error| error.to_string()));
-    });
+    peak_within(256 * (text.len() + 3) + 4096, || keep(Definition::read(dialect, "a/A", text)));
 }
 
 fn message_holds(dialect: Dialect, text: &str, bytes: &[u8]) {
     let definition = Definition::read(dialect, "a/A", text).unwrap();
-    peak_within(256 * (bytes.len() + definition.root().fields.len()) + 4096, || {
-        let _ = black_box(decode(&definition, bytes).map_err(|error| error.to_string()));
-    });
+    let most = 256 * (bytes.len() + definition.root().fields.len()) + 4096;
+    peak_within(most, || keep(decode(&definition, bytes)));
 }
 
 fn mapping_holds(text: &str) {
-    peak_within(512 * text.len() + 4096, || {
-        let _ = black_box(TopicMap::read(text.as_bytes()).map_err(|error| error.to_string()));
-    });
+    peak_within(512 * text.len() + 4096, || keep(TopicMap::read(text.as_bytes())));
 }
 
 #[test]
 fn reading_takes_no_more_memory_than_stated() {
-    assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1000)))), 1000);
+    peak::assert_measured();
     seeds_hold();
     zeros_hold();
     lines_hold();

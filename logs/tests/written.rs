@@ -160,7 +160,6 @@ pub(crate) struct File {
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Bags with each compression.
 pub(crate) fn bags(chunks: &[&[Said]], closed: Closed) -> [File; 3] {
     ["none", "bz2", "lz4"].map(|compression| File {
         name: format!("bag, {compression}"),

@@ -61,6 +61,7 @@ pub mod percept;
 mod similar;
 pub mod trace;
 pub mod visits;
+mod words;
 pub mod world;
 
 #[cfg(test)]

@@ -3,11 +3,13 @@
 
 use std::{cmp::Ordering, fmt};
 
+use serde::{Serialize, Serializer};
+
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// A way out of a vertex: the `i`-th dart clockwise from the one by which the robot came in. Door 0
 /// is the way back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Door(pub u32);
 
 impl Door {
@@ -75,8 +77,15 @@ impl fmt::Display for Sighting {
     }
 }
 
+/// In words.
+impl Serialize for Sighting {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 // paper: percept.degree, percept.featureless
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Percept {
     pub degree: u32,
     pub sighting: Sighting,

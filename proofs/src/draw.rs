@@ -172,7 +172,6 @@ pub fn number<const NIBBLES: u32>(choose: &mut impl Choose) -> u32 {
     number
 }
 
-/// A byte.
 pub fn byte(choose: &mut impl Choose) -> u8 {
     choose.below(16) << 4 | choose.below(16)
 }

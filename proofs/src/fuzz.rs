@@ -25,7 +25,6 @@ use crate::{
 /// The name of a target in `fuzz/` and of the folder of its seeds, and its body.
 pub type FuzzTarget = (&'static str, fn(&[u8]));
 
-/// All targets.
 pub const TARGETS: &[FuzzTarget] = &[
     ("world_file", world_file),
     ("planar_code", planar_code),

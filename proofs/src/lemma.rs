@@ -3,12 +3,13 @@
 use std::time::Instant;
 
 use serde::Serialize;
-use toposlam_model::enumerate::Watch;
+use thiserror::Error;
+use toposlam_model::{counts::counted, enumerate::Watch};
 
 use crate::{
     bytes::Bytes,
-    choose::{CaseResult, Stop},
-    odometer::{ChoiceOdometer, Counterexample, PROGRESS},
+    choose::CaseResult,
+    odometer::{ChoiceOdometer, Counterexample, PROGRESS, listed},
     replay::{CaseReplay, ChoicesError, ReplayedCase},
 };
 
@@ -80,14 +81,23 @@ pub struct LemmaCheck<'l> {
 }
 
 /// The reason why the exhaustive check of a lemma fails.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LemmaFailure {
     /// The lemma fails in a case.
+    #[error("it is not true that {}", _0.claim)]
     Case(Counterexample),
-    /// The number of cases is wrong; it must be this one, and at least 1.
-    Cases { pinned: u64 },
-    /// The check was stopped.
+    /// The number of cases is wrong; it must be the pinned one, and at least 1.
+    #[error("expected {} within its bound, found {}", in_cases(*pinned), in_cases(*found))]
+    Cases { pinned: u64, found: u64 },
+    #[error("the check was stopped")]
     Stopped,
+}
+
+impl LemmaFailure {
+    /// The choices of the case in which the lemma fails.
+    pub fn choices(&self) -> Option<&[u8]> {
+        if let Self::Case(case) = self { Some(&case.choices) } else { None }
+    }
 }
 
 /// The engines, and how to run each.
@@ -106,7 +116,67 @@ pub const ENGINES: [(&str, &str); 4] = [
     ),
 ];
 
+/// The totals of a check of lemmas. `toposlam proofs --json` prints them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CheckTotals {
+    pub lemmas: usize,
+    pub held: usize,
+    #[serde(skip)]
+    pub failed: usize,
+    pub not_checked: usize,
+    /// The cases of the lemmas that did not fail.
+    pub cases: u64,
+    pub seconds: f64,
+    /// Whether the check of a lemma was stopped, and none failed.
+    pub interrupted: bool,
+}
+
+impl CheckTotals {
+    /// The totals of a check of this many lemmas, as far as it went.
+    pub fn new(lemmas: usize, checked: &[LemmaCheck]) -> Self {
+        let mut totals = Self {
+            lemmas,
+            held: 0,
+            failed: 0,
+            not_checked: lemmas - checked.len(),
+            cases: 0,
+            seconds: checked.iter().map(|check| check.seconds).sum(),
+            interrupted: false,
+        };
+        for check in checked {
+            match check.failure {
+                None => totals.held += 1,
+                Some(LemmaFailure::Stopped) => totals.interrupted = true,
+                Some(_) => {
+                    totals.failed += 1;
+                    continue;
+                }
+            }
+            totals.cases += check.cases;
+        }
+        totals.interrupted &= totals.failed == 0;
+        totals
+    }
+}
+
+/// A number of cases in words.
+pub fn in_cases(number: u64) -> String {
+    counted(number as usize, "case")
+}
+
 impl Lemma {
+    /// The place in the paper, the file, and the bound of each engine, each after its label.
+    pub fn details(&self) -> Vec<(&'static str, String)> {
+        let Self { paper, file, exhaustive, sampled, kani, .. } = self;
+        let every = format!("{}: {}", exhaustive.bound, in_cases(exhaustive.cases));
+        let mut details =
+            vec![("paper", paper.to_string()), ("file", file.to_string()), ("exhaustive", every)];
+        details.extend(sampled.map(|sampled| ("sampled", sampled.bound.to_owned())));
+        details
+            .extend(kani.map(|kani| ("Kani", format!("{}; unwind {}", kani.bound, kani.unwind))));
+        details
+    }
+
     /// Checks the lemma on every case within its bound.
     pub fn check(&self, watch: &dyn Watch) -> LemmaCheck<'_> {
         let start = Instant::now();
@@ -116,9 +186,15 @@ impl Lemma {
             Err(case) => (case.cases, Some(LemmaFailure::Case(case))),
             Ok(found) if found == pinned && found > 0 => (found, None),
             Ok(found) if watch.stop() => (found, Some(LemmaFailure::Stopped)),
-            Ok(found) => (found, Some(LemmaFailure::Cases { pinned })),
+            Ok(found) => (found, Some(LemmaFailure::Cases { pinned, found })),
         };
         LemmaCheck { lemma: self, cases, seconds: start.elapsed().as_secs_f64(), failure }
+    }
+
+    /// The command that prints the case of these choices.
+    pub fn command(&self, choices: &[u8]) -> String {
+        let command = format!("toposlam proofs --run {} --choices {}", self.name, listed(choices));
+        command.trim_end().to_owned()
     }
 
     /// Makes a case again, and returns it after the name of the engine within whose bound it is. Of two engines it is
@@ -129,9 +205,10 @@ impl Lemma {
     pub fn replay(&self, choices: &[u8]) -> Result<(&'static str, ReplayedCase), ChoicesError> {
         let exhaustive = CaseReplay::show(self.exhaustive.replay, choices);
         let sampled = self.sampled.map(|sampled| CaseReplay::show(sampled.replay, choices));
-        let fails = |made: &ReplayedCase| matches!(made.case, Err(Stop::Fails(_)));
         match sampled {
-            Some(Ok(made)) if exhaustive.is_err() || fails(&made) => Ok(("sampled", made)),
+            Some(Ok(made)) if exhaustive.is_err() || made.claim().is_some() => {
+                Ok(("sampled", made))
+            }
             _ => exhaustive.map(|made| ("exhaustive", made)),
         }
     }
@@ -229,7 +306,7 @@ pub(crate) mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::odometer::listed;
+    use crate::choose::Stop;
 
     fn named<'l>(lemmas: &'l [Lemma], name: &str) -> &'l Lemma {
         lemmas.iter().find(|lemma| lemma.name == name).expect("it is listed")
@@ -237,21 +314,18 @@ pub(crate) mod tests {
 
     pub(crate) fn exhaustively(lemmas: &[Lemma], name: &str) {
         let lemma = named(lemmas, name);
-        let LemmaCheck { cases, failure, .. } = lemma.check(&());
-        match failure {
+        match lemma.check(&()).failure {
             None | Some(LemmaFailure::Stopped) => {}
-            Some(LemmaFailure::Cases { pinned }) => {
-                panic!("there are {cases} cases; there must be {pinned}, and at least one")
+            Some(failure) => {
+                let again = failure.choices().map(|choices| lemma.command(choices));
+                panic!("{failure}\n  {}", again.unwrap_or_default())
             }
-            Some(LemmaFailure::Case(Counterexample { choices, claim, .. })) => panic!(
-                "it does not hold that {claim}:\n  toposlam proofs --run {name} --choices {}",
-                listed(&choices)
-            ),
         }
     }
 
     pub(crate) fn sampled(lemmas: &[Lemma], name: &str) {
-        let sampled = named(lemmas, name).sampled.expect("it is sampled");
+        let lemma = named(lemmas, name);
+        let sampled = lemma.sampled.expect("it is sampled");
         // Where few cases are those of which the lemma speaks, more are drawn.
         let config = ProptestConfig { max_global_rejects: 1 << 16, ..ProptestConfig::default() };
         proptest!(config, |(bytes in proptest::collection::vec(any::<u8>(), 0..=1024))| {
@@ -260,9 +334,8 @@ pub(crate) mod tests {
                 Ok(()) => {}
                 Err(Stop::Excluded) => return Err(TestCaseError::reject("excluded")),
                 Err(Stop::Fails(claim)) => return Err(TestCaseError::fail(format!(
-                    "it does not hold that {claim}:\n  \
-                     toposlam proofs --run {name} --choices {}",
-                    listed(choose.choices())
+                    "it does not hold that {claim}:\n  {}",
+                    lemma.command(choose.choices())
                 ))),
             }
         });

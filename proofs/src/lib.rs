@@ -14,7 +14,9 @@
 //! * [`hallways`]: a robot in hallways: what it sees there, correctly or not, and where it arrives;
 //! * [`lemma`]: lemmas and their declaration;
 //! * [`lemmas`]: the lemmas, a file for each theme;
+//! * [`shown_case`]: what a lemma shows of a case, as data;
 //! * [`theorems`]: the theorems proved in Coq, in `coq/`;
+//! * [`statements`]: all lemmas and theorems, by name and by number;
 //! * [`fuzz`]: the bodies for fuzzers.
 //!
 //! The README of this crate combines them to the theorem.
@@ -30,14 +32,18 @@ pub mod lemmas;
 pub mod marker_theorems;
 pub mod odometer;
 pub mod replay;
+pub mod shown_case;
+pub mod statements;
 #[cfg(kani)]
 pub mod symbolic;
 pub mod theorems;
 
 pub use bytes::Bytes;
 pub use choose::{CaseResult, Choose, Exhibit, Stop};
-pub use lemma::{ENGINES, Lemma, LemmaCheck, LemmaFailure};
+pub use lemma::{CheckTotals, ENGINES, Lemma, LemmaCheck, LemmaFailure};
 pub use marker_theorems::MarkerTheorem;
 pub use odometer::{ChoiceOdometer, Counterexample};
 pub use replay::CaseReplay;
+pub use shown_case::{ShownExhibit, ShownWalk};
+pub use statements::{LemmaNameError, Statements};
 pub use theorems::Theorem;

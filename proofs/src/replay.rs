@@ -1,8 +1,8 @@
 //! Makes one case again, to show it to a person.
 
-use std::fmt;
+use thiserror::Error;
 
-use crate::choose::{CaseResult, Choose, Exhibit, unless_it_panics};
+use crate::choose::{CaseResult, Choose, Exhibit, Stop, unless_it_panics};
 
 /// Makes one case again, from a list of choices, and keeps its exhibits.
 #[derive(Clone, Debug, Default)]
@@ -15,9 +15,9 @@ pub struct CaseReplay {
 }
 
 /// A list of choices that is not a case of the lemma.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum ChoicesError {
-    /// A choice is too high.
+    #[error("choice number {place} is {choice}; it is at most {}", of - 1)]
     TooHigh {
         /// Its place in the list, from 1.
         place: usize,
@@ -25,29 +25,10 @@ pub enum ChoicesError {
         /// The number of possibilities at this place.
         of: u8,
     },
-    /// The list is too short or too long.
-    Length {
-        /// The number of choices in the list.
-        choices: usize,
-        /// The number of choices of a case that begins so; the least one, if the list is too short.
-        needed: usize,
-    },
-}
-
-impl fmt::Display for ChoicesError {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::TooHigh { place, choice, of } => {
-                write!(out, "choice number {place} is {choice}; it is at most {}", of - 1)
-            }
-            Self::Length { choices, needed } if choices < needed => {
-                write!(out, "a case that begins so has at least {needed} choices, not {choices}")
-            }
-            Self::Length { choices, needed } => {
-                write!(out, "the case that begins so has {needed} choices, not {choices}")
-            }
-        }
-    }
+    #[error("a case that begins so has at least {needed} choices, not {choices}")]
+    TooShort { choices: usize, needed: usize },
+    #[error("the case that begins so has {needed} choices, not {choices}")]
+    TooLong { choices: usize, needed: usize },
 }
 
 /// A case, made again.
@@ -56,6 +37,16 @@ pub struct ReplayedCase {
     pub case: CaseResult,
     /// What was chosen, as the lemma shows it.
     pub exhibits: Vec<Exhibit>,
+}
+
+impl ReplayedCase {
+    /// The claim that does not hold.
+    pub fn claim(&self) -> Option<&'static str> {
+        match self.case {
+            Err(Stop::Fails(claim)) => Some(claim),
+            Ok(()) | Err(Stop::Excluded) => None,
+        }
+    }
 }
 
 impl CaseReplay {
@@ -72,7 +63,8 @@ impl CaseReplay {
         let (choices, needed) = (replay.choices.len(), replay.made);
         match replay.misfit {
             Some(misfit) => Err(misfit),
-            None if needed != choices => Err(ChoicesError::Length { choices, needed }),
+            None if choices < needed => Err(ChoicesError::TooShort { choices, needed }),
+            None if choices > needed => Err(ChoicesError::TooLong { choices, needed }),
             None => Ok(ReplayedCase { case, exhibits: replay.exhibits }),
         }
     }

@@ -30,6 +30,15 @@ impl Theorem {
         let (file, coq) = ("proofs/coq/Theorems.v", Coq { bound: "every world" });
         Self { name, sentence, paper, file, coq }
     }
+
+    /// The place in the paper, the file, and the bound of Coq, each after its label.
+    pub fn details(&self) -> Vec<(&'static str, String)> {
+        vec![
+            ("paper", self.paper.clone()),
+            ("file", self.file.to_owned()),
+            ("Coq", self.coq.bound.to_owned()),
+        ]
+    }
 }
 
 const SOURCE: &str = include_str!("../coq/Theorems.v");

@@ -1,11 +1,12 @@
-//! No bytes make a parser take more memory than the multiple of them that it states. The allocator of
-//! the whole program is watched, so this is a program of its own, with one test in it.
+//! No bytes make a parser take more memory than the multiple of them that it states.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
-use std::{fmt::Display, hint::black_box, iter};
+#[path = "../../tests/memory/peak.rs"]
+mod peak;
 
-use peak_alloc::PeakAlloc;
+use std::iter;
+
 use proptest::{
     collection::vec,
     prelude::*,
@@ -17,66 +18,20 @@ use toposlam_model::format::{
     world_file,
 };
 
-#[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
+use peak::{Documented, keep};
 
-/// What a parser states: so many bytes of memory for each byte, and so many besides.
-struct Stated {
-    parser: &'static str,
-    /// Reads all there is, and says what is wrong.
-    read: fn(&[u8]),
-    multiple: usize,
-    besides: usize,
-}
-
-const WORLD_FILE: Stated = Stated {
-    parser: "world_file",
-    read: |bytes| keep(world_file::read(bytes)),
-    multiple: 512,
-    besides: 4096,
-};
-const PLANAR_CODE: Stated = Stated {
-    parser: "planar_code",
-    read: |bytes| plantri::read_headerless(bytes, PlantriCode::Planar).for_each(keep),
-    multiple: 128,
-    besides: 0,
-};
-const EDGE_CODE: Stated = Stated {
-    parser: "edge_code",
-    read: |bytes| plantri::read_headerless(bytes, PlantriCode::Edge).for_each(keep),
-    multiple: 128,
-    besides: 0,
-};
-
-/// Lets the compiler leave nothing out.
-fn keep<T, E: Display>(result: Result<T, E>) {
-    let _ = black_box(result.map_err(|error| black_box(error.to_string())));
-}
-
-/// The most memory taken at any time while this runs.
-fn peak(run: impl FnOnce()) -> usize {
-    let before = MEMORY.current_usage();
-    MEMORY.reset_peak_usage();
-    run();
-    MEMORY.peak_usage() - before
-}
-
-impl Stated {
-    /// The memory that reading these bytes takes, which is no more than stated.
-    fn holds(&self, bytes: &[u8]) -> usize {
-        let taken = peak(|| (self.read)(bytes));
-        let stated = self.multiple * bytes.len() + self.besides;
-        assert!(
-            taken <= stated,
-            "{} takes {taken} bytes of memory to read {}, {} for each; stated are {stated}: {}...",
-            self.parser,
-            bytes.len(),
-            taken / bytes.len(),
-            bytes[..bytes.len().min(80)].escape_ascii()
-        );
-        taken
-    }
-}
+const WORLD_FILE: Documented =
+    Documented::new("world_file", |bytes| keep(world_file::read(bytes)), [512, 4096]);
+const PLANAR_CODE: Documented = Documented::new(
+    "planar_code",
+    |bytes| plantri::read_headerless(bytes, PlantriCode::Planar).for_each(keep),
+    [128, 0],
+);
+const EDGE_CODE: Documented = Documented::new(
+    "edge_code",
+    |bytes| plantri::read_headerless(bytes, PlantriCode::Edge).for_each(keep),
+    [128, 0],
+);
 
 /// The same part again and again, to about so many bytes.
 fn again(part: &str, bytes: usize) -> String {
@@ -219,20 +174,18 @@ fn sampled<S: Strategy>(strategy: &S, holds: impl Fn(S::Value)) {
 
 #[test]
 fn reading_takes_no_more_memory_than_stated() {
-    // The watch sees what is there.
-    assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1000)))), 1000);
+    peak::assert_measured();
 
     // Growing vectors are largest just after a power of two.
     let lengths = (1..70).chain([127, 260, 1000, 1030, 4000, 4100, 16_400, 33_000, 100_000]);
     let mut most = [0, 0, 0];
     for length in lengths {
         for file in world_files(length) {
-            let taken = WORLD_FILE.holds(file.as_bytes());
-            most[0] = most[0].max(taken / file.len());
+            most[0] = most[0].max(WORLD_FILE.holds(file.as_bytes()));
         }
         for file in codes(length) {
-            most[1] = most[1].max(PLANAR_CODE.holds(&file) / file.len());
-            most[2] = most[2].max(EDGE_CODE.holds(&file) / file.len());
+            most[1] = most[1].max(PLANAR_CODE.holds(&file));
+            most[2] = most[2].max(EDGE_CODE.holds(&file));
         }
     }
     println!("the most for each byte: {most:?}");

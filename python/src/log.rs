@@ -11,7 +11,6 @@ use pyo3::{
 };
 use toposlam_draw::picture::{LaserRunPicture, laser_run_svg};
 use toposlam_logs::{
-    Format,
     entries::{Content, Entry},
     error::LogError,
     messages::Run,
@@ -97,17 +96,9 @@ impl LogReader {
         Ok(Self { path, log, mapping, run })
     }
 
-    /// The format, in words.
     #[getter]
     fn format(&self) -> &'static str {
-        match self.log.format() {
-            Format::Bag => "bag",
-            Format::Mcap => "mcap",
-            Format::Carmen => "carmen",
-            Format::Events => "events",
-            Format::Database => "db3",
-            Format::Folder => "rosbag2",
-        }
+        self.log.format().name()
     }
 
     /// Each topic: its name, its type and the number of its messages.
@@ -143,7 +134,6 @@ impl LogReader {
         fields.filter(|(_, text)| !text.is_empty()).into_py_dict(py)
     }
 
-    /// Reads the tables.
     fn tables(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<Tables> {
         let read = run_watched(py, progress, None, |watcher| self.read(watcher))?;
         let read = read.map_err(|cause| self.error(py, &cause))?;

@@ -29,7 +29,6 @@ impl Watcher {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Counts cases.
     pub(crate) fn count(&self, cases: u64) {
         self.done.fetch_add(cases, Ordering::Relaxed);
     }

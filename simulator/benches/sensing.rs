@@ -134,7 +134,6 @@ fn step_6_junction<const PLACE: usize>(bencher: Bencher) {
     bencher.bench_local(|| junction(&corners(&walls), &walls, &case.boundary, &frame));
 }
 
-/// The marker.
 #[divan::bench(sample_count = 200, sample_size = 1)]
 fn step_7_marker(bencher: Bencher) {
     let case = Case::new(1280, 1);

@@ -35,7 +35,7 @@ use super::{
     exit_codes::help_end,
     input,
     json::{print_line, print_unread},
-    laser_options::LaserOptions,
+    laser_options::WorldLaserOptions,
     method_options::algorithms,
     open_log::LogOptions,
     outcome::SeveralInputs,
@@ -86,7 +86,7 @@ pub(super) struct ConformArguments {
     /// scenes, commands, percepts, doors and the map with the recorded ones
     #[arg(long, conflicts_with_all = [
         "world", "start", "marker", "assume_marker", "driver", "class", "max_edges", "max_steps",
-        "LaserOptions", "events", "quirks", "require_coverage", "minimise", "picture", "html", "CiOptions",
+        "laser_params", "corners", "events", "quirks", "require_coverage", "minimise", "picture", "html", "CiOptions",
     ])]
     rerun: bool,
     /// The world file or floor plan in which they were recorded
@@ -122,7 +122,7 @@ pub(super) struct ConformArguments {
     #[command(flatten)]
     sources: LogOptions,
     #[command(flatten)]
-    laser: LaserOptions,
+    laser: WorldLaserOptions,
     /// The source of the events [default: the first of these that the log has]
     #[arg(long, value_name = "WHAT", value_parser = evidence())]
     events: Option<Evidence>,

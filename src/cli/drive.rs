@@ -41,7 +41,7 @@ toposlam drive [OPTIONS] --ros <URI> --calibration <FILE>
             (0, "the building is mapped"),
             (1, "the robot gave up"),
             (2, "bad usage or input, or there is no robot"),
-            (3, "ended by Ctrl-C or at --max-darts, or a door is blocked"),
+            (3, "ended by Ctrl-C or at the darts of --budget, or a door is blocked"),
         ],
     )
 )]

@@ -8,12 +8,12 @@ use std::{
     path::PathBuf,
 };
 
-use serde_json::Value;
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     mapping::{DEFAULT_DART_BOUND, MappingAlgorithm, MappingEvent, MappingMethod, Observer},
     marker::Marker,
+    world::Action,
 };
 
 use super::{
@@ -21,7 +21,6 @@ use super::{
     certificate_cost::CertificateCost,
     exit_codes::help_end,
     input,
-    json::action_json,
     mapping_marker::{algorithm_for, check_worlds, is_directional, mapping_marker},
     method_options::{AuditOption, algorithms},
     output,
@@ -131,8 +130,8 @@ const STORY_VERTICES: usize = 25;
 
 /// What is printed of a run.
 enum RunPrinter<'o, W: Write> {
-    /// Doors, pick-ups and drops, as JSON.
-    Doors(Vec<Value>),
+    /// For JSON.
+    Doors(Vec<Action>),
     /// Counts, at the end.
     Summary(Summary),
     Story(Box<PrintedStory<&'o mut W>>),
@@ -184,7 +183,7 @@ impl ExploreArguments {
             self.max_darts,
             (world, facing),
             &mut |world: &mut _, journey: &_, event: MappingEvent| match &mut printer {
-                RunPrinter::Doors(doors) => doors.extend(event.action().map(action_json)),
+                RunPrinter::Doors(doors) => doors.extend(event.action()),
                 RunPrinter::Summary(summary) => summary.count(event),
                 RunPrinter::Story(story) => story.event(world, journey, event),
             },

@@ -197,15 +197,14 @@ fn print_damage(out: &mut dyn Write, found: &Verification) -> Result<(), CliErro
     Ok(())
 }
 
-/// The name of a log's format, and what it is called in words.
-fn format(log: &Log) -> [&'static str; 2] {
-    match log.format() {
-        Format::Bag => ["bag", "ROS 1 bag"],
-        Format::Mcap => ["mcap", "MCAP"],
-        Format::Carmen => ["carmen", "CARMEN log"],
-        Format::Events => ["events", "events"],
-        Format::Database => ["db3", "rosbag2 database"],
-        Format::Folder => ["rosbag2", "rosbag2 folder"],
+fn format_in_words(format: Format) -> &'static str {
+    match format {
+        Format::Bag => "ROS 1 bag",
+        Format::Mcap => "MCAP",
+        Format::Carmen => "CARMEN log",
+        Format::Events => "events",
+        Format::Database => "rosbag2 database",
+        Format::Folder => "rosbag2 folder",
     }
 }
 
@@ -253,7 +252,7 @@ impl ListedLog<'_> {
         let mapping: Map<_, _> = mapping.collect();
         json!({
             "log": path.display().to_string(),
-            "format": format(log)[0],
+            "format": log.format().name(),
             "compression": log.compression().map(FileCompression::name),
             "bytes": log.size(),
             // Nanoseconds.
@@ -297,7 +296,7 @@ impl ListedLog<'_> {
             log.compression().map_or(String::new(), |known| format!(", {}", known.name()));
         let path = printable(&self.path.display().to_string());
         let size = grouped(log.size().into());
-        writeln!(out, "{path}: {}{compression}, {size} bytes", format(log)[1])?;
+        writeln!(out, "{path}: {}{compression}, {size} bytes", format_in_words(log.format()))?;
         if let Some(truncation) = log.truncation() {
             print_hanging(out, "", &truncation.to_string())?;
         }

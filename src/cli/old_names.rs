@@ -73,7 +73,7 @@ pub(super) fn with_new_names(mut arguments: Vec<OsString>) -> Result<RenamedArgu
 }
 
 /// The options that have another name, or none: the command, the old name, and what to write.
-const OPTIONS: [(&[&str], &str, &str); 35] = [
+const OPTIONS: [(&[&str], &str, &str); 40] = [
     (&[], "color", "the variables NO_COLOR and CLICOLOR_FORCE decide on colours"),
     (&["check"], "max-states", "--choices all=N"),
     (&["check"], "probes", "--estimate=N"),
@@ -85,9 +85,14 @@ const OPTIONS: [(&[&str], &str, &str); 35] = [
     (&["proofs"], "engine", "`--choices` alone finds the engine"),
     (&["sense"], "out", "redirect standard output"),
     (&["camera", "train"], "stripe-width", "--stripe floor=METRES"),
+    (&["draw"], "effects", "--effect none"),
+    (&["simulate"], "effects", "--effect none"),
+    (&["sense"], "corners", "`corners = true` below `[corner]` in the file of --laser-params"),
     (&["simulate"], "max-moves", "--budget Nmoves"),
     (&["simulate"], "max-minutes", "--budget Nmin"),
     (&["simulate"], "battery-per-metre", "--budget Nm"),
+    (&["simulate"], "max-darts", "--budget Ndarts"),
+    (&["drive"], "max-darts", "--budget Ndarts"),
     (&["drive"], "max-moves", "--budget Nmoves"),
     (&["drive"], "max-minutes", "--budget Nmin"),
     (&["drive"], "battery-per-metre", "--budget Nm"),

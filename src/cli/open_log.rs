@@ -35,7 +35,6 @@ pub(super) struct LogOptions {
     colours: Option<PathBuf>,
 }
 
-/// An open log.
 pub(super) struct OpenLog {
     pub(super) log: Log,
     pub(super) topics: TopicMap,

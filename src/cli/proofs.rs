@@ -5,13 +5,15 @@ mod case;
 mod tests;
 
 use std::{
-    collections::BTreeSet,
     io::{self, Write},
     mem,
 };
 
 use serde_json::{Value, json};
-use toposlam_proofs::{ENGINES, Lemma, LemmaCheck, LemmaFailure, Theorem, lemmas, theorems};
+use toposlam_proofs::{
+    CheckTotals, ENGINES, Lemma, LemmaCheck, LemmaFailure, Statements, lemma::in_cases,
+    statements::ALL,
+};
 
 use super::{
     CliError, Outcome,
@@ -62,28 +64,18 @@ pub(super) struct ProofsArguments {
     ci: CiOptions,
 }
 
-/// The name for every lemma.
-const ALL: &str = "all";
-
-/// The lemmas and the theorems that there are.
-type Statements<'s> = (&'s [&'s Lemma], &'s [Theorem]);
-
 impl ProofsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         self.ci.check_places()?;
-        let (lemmas, theorems): (Vec<_>, Vec<_>) =
-            (lemmas::all().collect(), theorems::all().collect());
-        self.run_with((&lemmas, &theorems), out)
+        self.run_with(&Statements::all(), out)
     }
 
-    fn run_with(&self, all: Statements, out: &mut dyn Write) -> Result<Outcome, CliError> {
+    fn run_with(&self, all: &Statements, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if self.choices.is_some() && !matches!(self.run.as_slice(), [name] if name != ALL) {
             let cause = "choices make a case of one lemma; choose it with one --run";
             return Err(CliError::at("--choices", cause));
         }
-        let named: Result<Vec<_>, _> = self.run.iter().map(|name| named(name, all)).collect();
-        let (mut lemmas, mut names) = (named?.concat(), BTreeSet::new());
-        lemmas.retain(|lemma| names.insert(lemma.name));
+        let lemmas = all.named(&self.run).map_err(|cause| CliError::at("--run", cause))?;
         let mut report = Report { text: out, json: &mut io::sink() };
         if self.json {
             mem::swap(&mut report.text, &mut report.json);
@@ -118,44 +110,24 @@ impl ProofsArguments {
                 break;
             }
         }
-        for LemmaCheck { lemma, cases, failure, .. } in &checked {
+        for LemmaCheck { lemma, failure, .. } in &checked {
             match failure {
                 Some(LemmaFailure::Case(case)) => {
                     writeln!(report.text)?;
                     report.case(lemma, &case.choices)?;
                 }
-                Some(LemmaFailure::Cases { pinned }) => {
-                    let [pinned, found] = [*pinned, *cases].map(in_cases);
+                Some(failure @ LemmaFailure::Cases { .. }) => {
                     writeln!(report.text)?;
                     report.statement(lemma.name, lemma.sentence)?;
-                    let cause = format!("expected {pinned} within its bound, found {found}");
-                    print_hanging(report.text, "  fails: ", &cause)?;
+                    print_hanging(report.text, "  fails: ", &failure.to_string())?;
                 }
                 Some(LemmaFailure::Stopped) | None => {}
             }
         }
-        let outcome = report.totals(lemmas.len(), &checked)?;
+        let outcome = report.totals(&CheckTotals::new(lemmas.len(), &checked))?;
         self.ci.write("proofs", &results)?;
         Ok(outcome)
     }
-}
-
-/// The lemma of this name, or else the only one whose name contains it; or all lemmas.
-fn named<'l>(name: &str, (lemmas, theorems): Statements<'l>) -> Result<Vec<&'l Lemma>, CliError> {
-    let exact: Vec<_> = lemmas.iter().copied().filter(|l| name == ALL || l.name == name).collect();
-    let fitting: Vec<_> = lemmas.iter().copied().filter(|l| l.name.contains(name)).collect();
-    let (cause, listed) = match fitting.as_slice() {
-        _ if !exact.is_empty() => return Ok(exact),
-        _ if theorems.iter().any(|theorem| theorem.name == name) => {
-            let how = "is proved in Coq, for every world; run proofs/coq/check to check it";
-            return Err(CliError::at("--run", format!("{name} {how}")));
-        }
-        [_] => return Ok(fitting),
-        [] => (format!("there is no lemma `{name}`; there are"), lemmas),
-        several => (format!("`{name}` is part of several names"), several),
-    };
-    let names: Vec<_> = listed.iter().map(|lemma| lemma.name).collect();
-    Err(CliError::at("--run", format!("{cause}:\n  {}", names.join("\n  "))))
 }
 
 fn verdict(check: &LemmaCheck) -> (Outcome, &'static str) {
@@ -169,14 +141,12 @@ fn verdict(check: &LemmaCheck) -> (Outcome, &'static str) {
 fn check_json(check: &LemmaCheck, outcome: Outcome) -> Value {
     let mut line = json!({
         "lemma": check.lemma.name, "cases": check.cases, "seconds": check.seconds,
-        "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds, "choices": null,
+        "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
+        "choices": check.failure.as_ref().and_then(LemmaFailure::choices),
     });
     match &check.failure {
-        Some(LemmaFailure::Case(case)) => {
-            line["choices"] = json!(case.choices);
-            line["claim"] = json!(case.claim);
-        }
-        Some(LemmaFailure::Cases { pinned }) => line["pinned"] = json!(pinned),
+        Some(LemmaFailure::Case(case)) => line["claim"] = json!(case.claim),
+        Some(LemmaFailure::Cases { pinned, .. }) => line["pinned"] = json!(pinned),
         Some(LemmaFailure::Stopped) | None => {}
     }
     line["interrupted"] = json!(outcome == Outcome::Incomplete);
@@ -191,57 +161,38 @@ struct Report<'o> {
 
 impl Report<'_> {
     /// Prints the lemmas and the theorems, and their numbers.
-    fn list(&mut self, (lemmas, theorems): Statements) -> Result<Outcome, CliError> {
-        for lemma in lemmas {
-            let Lemma { name, sentence, paper, file, exhaustive, sampled, kani } = lemma;
-            let every = format!("{}: {}", exhaustive.bound, in_cases(exhaustive.cases));
-            let kani = kani.map(|kani| format!("{}; unwind {}", kani.bound, kani.unwind));
-            self.statement(name, sentence)?;
-            self.rows([("paper", *paper), ("file", *file), ("exhaustive", &every)])?;
-            self.rows(sampled.map(|sampled| ("sampled", sampled.bound)))?;
-            self.rows(kani.as_deref().map(|kani| ("Kani", kani)))?;
-            writeln!(self.text)?;
+    fn list(&mut self, all: &Statements) -> Result<Outcome, CliError> {
+        for lemma in &all.lemmas {
+            self.entry(lemma.name, lemma.sentence, &lemma.details())?;
             print_line(self.json, "lemma", lemma)?;
         }
-        for theorem in theorems {
-            let Theorem { name, sentence, paper, file, coq } = theorem;
-            self.statement(name, sentence)?;
-            self.rows([("paper", paper.as_str()), ("file", *file), ("Coq", coq.bound)])?;
-            writeln!(self.text)?;
+        for theorem in &all.theorems {
+            self.entry(theorem.name, &theorem.sentence, &theorem.details())?;
             print_line(self.json, "theorem", theorem)?;
         }
-        self.rows(ENGINES)?;
-        let cases: u64 = lemmas.iter().map(|lemma| lemma.exhaustive.cases).sum();
-        let bounded =
-            format!("{}, {} within bounds", counted(lemmas.len(), "lemma"), in_cases(cases));
-        let proved = format!("{} for every world", counted(theorems.len(), "theorem"));
+        for (engine, how_to_run_it) in ENGINES {
+            self.row(engine, how_to_run_it)?;
+        }
+        let counts = all.counts();
+        let (lemmas, cases) = (counted(counts.lemmas, "lemma"), in_cases(counts.cases));
+        let theorems = counted(counts.theorems, "theorem");
         writeln!(self.text)?;
-        print_paragraph(self.text, &format!("{bounded}; {proved}"))?;
-        let totals = json!({
-            "lemmas": lemmas.len(), "theorems": theorems.len(), "cases": cases,
-            "sampled": lemmas.iter().filter(|lemma| lemma.sampled.is_some()).count(),
-            "kani": lemmas.iter().filter(|lemma| lemma.kani.is_some()).count(),
-        });
-        print_line(self.json, "lemmas", &totals)?;
+        let text = format!("{lemmas}, {cases} within bounds; {theorems} for every world");
+        print_paragraph(self.text, &text)?;
+        print_line(self.json, "lemmas", &counts)?;
         Ok(Outcome::Holds)
     }
 
-    fn totals(&mut self, lemmas: usize, checked: &[LemmaCheck]) -> Result<Outcome, CliError> {
-        let count = |outcome| checked.iter().filter(|check| verdict(check).0 == outcome).count();
-        let sound = checked.iter().filter(|check| verdict(check).0 != Outcome::Violated);
-        let cases: u64 = sound.map(|check| check.cases).sum();
-        let (outcome, word, end) = match [Outcome::Violated, Outcome::Incomplete].map(count) {
-            [0, 0] => (Outcome::Holds, "holds", ""),
-            [0, _] => (Outcome::Incomplete, "incomplete, interrupted", " held"),
-            [_, _] => (Outcome::Violated, "violated", " held"),
+    fn totals(&mut self, totals: &CheckTotals) -> Result<Outcome, CliError> {
+        let CheckTotals { lemmas, held, failed, not_checked, cases, interrupted, .. } = *totals;
+        let (outcome, word, end) = match failed {
+            0 if interrupted => (Outcome::Incomplete, "incomplete, interrupted", " held"),
+            0 => (Outcome::Holds, "holds", ""),
+            _ => (Outcome::Violated, "violated", " held"),
         };
-        let (held, not_checked) = (count(Outcome::Holds), lemmas - checked.len());
-        let line = json!({
-            "lemmas": lemmas, "held": held, "not_checked": not_checked, "cases": cases,
-            "seconds": checked.iter().map(|check| check.seconds).sum::<f64>(),
-            "interrupted": outcome == Outcome::Incomplete, "verdict": outcome.verdict(),
-            "holds": outcome == Outcome::Holds,
-        });
+        let mut line = json!(totals);
+        line["verdict"] = json!(outcome.verdict());
+        line["holds"] = json!(outcome == Outcome::Holds);
         print_line(self.json, "checks", &line)?;
         let left =
             if not_checked > 0 { format!("; {not_checked} not checked") } else { String::new() };
@@ -250,18 +201,18 @@ impl Report<'_> {
         Ok(outcome)
     }
 
+    fn entry(&mut self, name: &str, sentence: &str, details: &[(&str, String)]) -> io::Result<()> {
+        self.statement(name, sentence)?;
+        details.iter().try_for_each(|(label, text)| self.row(label, text))?;
+        writeln!(self.text)
+    }
+
     fn statement(&mut self, name: &str, sentence: &str) -> io::Result<()> {
         writeln!(self.text, "{name}")?;
         print_hanging(self.text, "  ", sentence)
     }
 
-    fn rows<'t>(&mut self, rows: impl IntoIterator<Item = (&'t str, &'t str)>) -> io::Result<()> {
-        let print = |(label, text)| print_hanging(self.text, &format!("  {label:10}  "), text);
-        rows.into_iter().try_for_each(print)
+    fn row(&mut self, label: &str, text: &str) -> io::Result<()> {
+        print_hanging(self.text, &format!("  {label:10}  "), text)
     }
-}
-
-/// A number of cases.
-fn in_cases(number: u64) -> String {
-    counted(number as usize, "case")
 }

@@ -35,15 +35,13 @@ pub(super) struct RunOptions {
     #[arg(long, requires = "recover")]
     pub(super) allow_blocked: bool,
     /// Return to the marker before this is over: moves, minutes of the robot's clock, or metres as far as the
-    /// battery lasts, as in 25moves, 20min or 1000m (repeatable)
+    /// battery lasts, as in 25moves, 20min or 1000m; or stop if the map has more darts, as in 400darts
+    /// (repeatable) [default: 1000darts]
     #[arg(long, value_name = "LIMIT", allow_hyphen_values = true, value_parser = limit)]
-    budget: Vec<BudgetLimit>,
+    budget: Vec<RunLimit>,
     /// With --recover: go on from the log of an earlier run, .mcap, wherever the robot stands (repeatable)
     #[arg(long, value_name = "LOG", requires = "recover")]
     resume: Vec<PathBuf>,
-    /// Stop if the map has more darts
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_DARTS)]
-    max_darts: usize,
     /// Write a log of the run, .mcap
     #[arg(long, value_name = "FILE")]
     pub(super) log: Option<PathBuf>,
@@ -55,8 +53,14 @@ pub(super) struct RunOptions {
     pub(super) json: bool,
 }
 
-/// Parses a limit of what a run may spend: a number and its unit.
-fn limit(text: &str) -> Result<BudgetLimit, String> {
+#[derive(Clone, Copy, Debug)]
+enum RunLimit {
+    Budget(BudgetLimit),
+    Darts(usize),
+}
+
+/// Parses a limit of a run: a number and its unit.
+fn limit(text: &str) -> Result<RunLimit, String> {
     let unit = text.trim_start_matches(|letter: char| "0123456789.".contains(letter));
     let number = text.strip_suffix(unit).unwrap_or_default();
     let real = || number.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
@@ -64,9 +68,11 @@ fn limit(text: &str) -> Result<BudgetLimit, String> {
         "moves" => number.parse().ok().filter(|&moves| moves > 0).map(BudgetLimit::Moves),
         "min" => real().map(|minutes| BudgetLimit::Time(60.0 * minutes)),
         "m" => real().map(BudgetLimit::Way),
+        "darts" => return number.parse().map(RunLimit::Darts).map_err(|error| error.to_string()),
         _ => None,
     };
-    limit.ok_or_else(|| "write a number above 0 with its unit: moves, min or m".to_owned())
+    let limit = limit.map(RunLimit::Budget);
+    limit.ok_or_else(|| "write a number above 0 with its unit: moves, min, m or darts".to_owned())
 }
 
 impl RunOptions {
@@ -82,16 +88,17 @@ impl RunOptions {
             }),
             method @ MappingMethod::By { .. } => method,
         };
-        let mut budget = RunBudget::default();
+        let (mut budget, mut max_darts) = (RunBudget::default(), DEFAULT_MAX_DARTS);
         for limit in &self.budget {
             match *limit {
-                BudgetLimit::Moves(moves) => budget.moves = Some(moves),
-                BudgetLimit::Time(seconds) => budget.seconds = Some(seconds),
-                BudgetLimit::Way(metres) => budget.metres = Some(metres),
+                RunLimit::Budget(BudgetLimit::Moves(moves)) => budget.moves = Some(moves),
+                RunLimit::Budget(BudgetLimit::Time(seconds)) => budget.seconds = Some(seconds),
+                RunLimit::Budget(BudgetLimit::Way(metres)) => budget.metres = Some(metres),
+                RunLimit::Darts(darts) => max_darts = darts,
             }
         }
         let earlier = earlier_walks_of(&self.resume, world_hash)?;
-        Ok(RunSettings { budget, earlier, ..RunSettings::new(method, self.max_darts) })
+        Ok(RunSettings { budget, earlier, ..RunSettings::new(method, max_darts) })
     }
 
     /// Checks the places of the log and the map, before long work begins.

@@ -115,11 +115,11 @@ pub(super) struct SimulateArguments {
 }
 
 /// Options of rendered images, which neither --by-scene nor --sensor laser makes.
-const OF_IMAGES: [&str; 6] = ["calibration", "size", "colours", "look", "effects", "effect"];
+const OF_IMAGES: [&str; 5] = ["calibration", "size", "colours", "look", "effect"];
 
 /// Options that need a run; --ros serves the robot instead. All are named: clap drops the requirement of an option
 /// that conflicts.
-const NOT_DRIVEN: [&str; 14] = [
+const NOT_DRIVEN: [&str; 13] = [
     "algorithm",
     "audit",
     "recover",
@@ -133,7 +133,6 @@ const NOT_DRIVEN: [&str; 14] = [
     "html",
     "map",
     "json",
-    "max_darts",
 ];
 
 /// A simulation that is ready to run.
@@ -439,7 +438,10 @@ Examples:
             (0, "the map is right"),
             (1, "the map is wrong, or the robot gave up"),
             (2, "bad usage or input"),
-            (3, "ended by Ctrl-C or at --max-darts, a door is blocked, or a fault did not happen"),
+            (
+                3,
+                "ended by Ctrl-C or at the darts of --budget, a door is blocked, or a fault did not happen",
+            ),
         ],
     )
 }
@@ -465,9 +467,9 @@ mod tests {
             ),
             (
                 "a.toml --seed 7 --fault carried@40 --audit --fault dropped@3:9 --size 1280x960 \
-                 --effects none --effect noise=0.25 --algorithm algorithm1 --max-darts 20",
-                "a.toml --algorithm algorithm1 --audit=1 --effect noise=0.25 --effects none \
-                 --fault carried@40 --fault dropped@3:9 --max-darts 20 --seed 7 --size 1280x960",
+                 --effect none --effect noise=0.25 --algorithm algorithm1 --budget 20darts",
+                "a.toml --algorithm algorithm1 --audit=1 --budget 20darts --effect none \
+                 --effect noise=0.25 --fault carried@40 --fault dropped@3:9 --seed 7 --size 1280x960",
             ),
             (
                 "a.toml --scanner it's.toml --sensor laser",

@@ -1,12 +1,9 @@
-//! The output of `--json`: one object a line, with actions and percepts. `docs/schema` describes each kind
-//! of line.
+//! The output of `--json`: one object a line. `docs/schema` describes each kind of line.
 
 use std::io::{self, Write};
 
 use serde::Serialize;
-use serde_json::{Value, json};
 use toposlam_logs::error::Truncation;
-use toposlam_model::{percept::Percept, world::Action};
 
 use super::CliError;
 
@@ -21,23 +18,15 @@ struct VersionedLine<'c, C> {
     content: &'c C,
 }
 
-fn line_text(kind: &'static str, content: &impl Serialize) -> io::Result<String> {
-    Ok(serde_json::to_string(&VersionedLine { schema: SCHEMA, kind, content })?)
-}
-
 /// Prints an object on a line of its own, after its version and its kind.
 pub fn print_line(
     out: &mut dyn Write,
     kind: &'static str,
     content: &impl Serialize,
 ) -> Result<(), CliError> {
-    Ok(writeln!(out, "{}", line_text(kind, content)?)?)
-}
-
-/// Prints the beginning of a line, up to the comma after its kind.
-pub fn begin_line(out: &mut dyn Write, kind: &'static str) -> io::Result<()> {
-    let empty = line_text(kind, &())?;
-    write!(out, "{},", empty.strip_suffix('}').unwrap_or(&empty))
+    let line = VersionedLine { schema: SCHEMA, kind, content };
+    let line = serde_json::to_string(&line).map_err(io::Error::from)?;
+    Ok(writeln!(out, "{line}")?)
 }
 
 /// Where a log ends before its end.
@@ -63,17 +52,4 @@ struct UnreadLine<'f> {
 /// Prints that one of several inputs could not be used.
 pub fn print_unread(out: &mut dyn Write, file: &str, cause: &str) -> Result<(), CliError> {
     print_line(out, "unread", &UnreadLine { file, cause })
-}
-
-/// A door is a number, another action is a word.
-pub fn action_json(action: Action) -> Value {
-    match action {
-        Action::Take(door) => json!(door.0),
-        other => json!(other.to_string()),
-    }
-}
-
-/// The degree, and the sighting in words.
-pub fn percept_json(percept: Percept) -> Value {
-    json!({ "degree": percept.degree, "sighting": percept.sighting.to_string() })
 }

@@ -31,7 +31,7 @@ fn colours_and_their_images_can_come_from_standard_input() {
     scratch.out(&format!("draw {world} --pose start --size 640x480 -o v.png"), 0);
     scratch.write("c.toml", scratch.out("camera calibrate v.png", 0));
     // The colours are those in the log of a short run.
-    scratch.out(&format!("simulate {world} --max-darts 3 --log run.mcap"), 3);
+    scratch.out(&format!("simulate {world} --budget 3darts --log run.mcap"), 3);
     let log = Log::open(&scratch.path("run.mcap")).unwrap();
     let bound = TopicMap::unambiguous(&log).bind(&log).unwrap();
     let run = log.entries(&bound).find_map(|entry| match entry.unwrap().content {

@@ -217,7 +217,6 @@ fn ends(trace: &SensingTrace, wall: &WallSegment) -> Option<[Point2<f64>; 2]> {
     Some([wall.from, wall.to].map(|end| robot_from_walls * wall.along.point(end, wall.offset)))
 }
 
-/// An empty ground view.
 fn empty() -> Canvas<fn(Point2<f64>) -> [f32; 2]> {
     let side = GroundView::SIDE as u32;
     let pixel = |point: Point2<f64>| at(point).map(|part| part as f32);

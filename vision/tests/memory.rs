@@ -1,89 +1,50 @@
 //! No bytes make a reader of calibrations, of colours or of images take more memory than documented.
-//! The allocator of the whole program is watched, so this is a program of its own, with one test in it.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
-use std::{hint::black_box, io::Cursor};
+#[path = "../../tests/memory/peak.rs"]
+mod peak;
+
+use std::{
+    hint::black_box,
+    io::{Cursor, ErrorKind},
+};
 
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
-use peak_alloc::PeakAlloc;
+use peak::{Documented, keep, peak};
 use toposlam_vision::{
     camera::{KannalaBrandt, Mask, Mei, OCam, calibration},
     colour::ColourModel,
     image_file::{ImageFile, ImageFileError},
 };
 
-#[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
-
-/// A reader with its documented memory: bytes for each byte of the file, and bytes besides.
-struct Stated {
-    reader: &'static str,
-    /// Reads everything and returns the error, if any.
-    read: fn(&[u8]) -> Option<String>,
-    multiple: usize,
-    besides: usize,
-}
-
-const fn stated(
-    reader: &'static str,
-    read: fn(&[u8]) -> Option<String>,
-    [multiple, besides]: [usize; 2],
-) -> Stated {
-    Stated { reader, read, multiple, besides }
-}
-
-fn message<T, E: ToString>(read: Result<T, E>) -> Option<String> {
-    black_box(read).err().map(|error| error.to_string())
-}
-
-fn read_calibration(bytes: &[u8]) -> Option<String> {
-    message(calibration::read(bytes, &mut |_| Err(std::io::ErrorKind::NotFound.into())))
-}
-
-const COLOURS: Stated = stated("colours", |bytes| message(ColourModel::read(bytes)), [512, 4096]);
-const IMAGE: Stated =
-    stated("image", |bytes| message(ImageFile::open(bytes).map(|it| it.size())), [16, 1 << 20]);
-const READERS: [Stated; 6] = [
-    stated("calibration", read_calibration, [512, 4096]),
-    stated("OCamCalib", |bytes| message(OCam::read("f", bytes, 1.0)), [32, 4096]),
-    stated("MEI", |bytes| message(Mei::read("f", bytes, 1.0)), [512, 65_536]),
-    stated(
+const COLOURS: Documented =
+    Documented::new("colours", |bytes| keep(ColourModel::read(bytes)), [512, 4096]);
+const IMAGE: Documented = Documented::new(
+    "image",
+    |bytes| keep(ImageFile::open(bytes).map(|it| it.size())),
+    [16, 1 << 20],
+);
+const READERS: [Documented; 6] = [
+    Documented::new(
+        "calibration",
+        |bytes| keep(calibration::read(bytes, &mut |_| Err(ErrorKind::NotFound.into()))),
+        [512, 4096],
+    ),
+    Documented::new("OCamCalib", |bytes| keep(OCam::read("f", bytes, 1.0)), [32, 4096]),
+    Documented::new("MEI", |bytes| keep(Mei::read("f", bytes, 1.0)), [512, 65_536]),
+    Documented::new(
         "fisheye",
-        |bytes| message(KannalaBrandt::read("f", bytes, 1.0, [0.0; 2])),
+        |bytes| keep(KannalaBrandt::read("f", bytes, 1.0, [0.0; 2])),
         [512, 65_536],
     ),
     COLOURS,
     IMAGE,
 ];
 
-fn peak(run: impl FnOnce()) -> usize {
-    let before = MEMORY.current_usage();
-    MEMORY.reset_peak_usage();
-    run();
-    MEMORY.peak_usage() - before
-}
-
-impl Stated {
-    /// The memory for each byte, which must not be more than documented.
-    fn holds(&self, bytes: &[u8]) -> usize {
-        let taken = peak(|| drop((self.read)(bytes)));
-        let stated = self.multiple * bytes.len() + self.besides;
-        assert!(
-            taken <= stated,
-            "{} takes {taken} bytes of memory to read {}; stated are {stated}: {}...",
-            self.reader,
-            bytes.len(),
-            bytes[..bytes.len().min(80)].escape_ascii()
-        );
-        taken / bytes.len()
-    }
-}
-
 #[test]
 fn reading_takes_no_more_memory_than_documented() {
-    // The allocator is measured.
-    assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1000)))), 1000);
+    peak::assert_measured();
 
     let parts = "\n~,~[~{~=~\"~a.~#\n~[[a]]\n~[[a.b]]\n~'~\x7f~1 ~1\n~-1 ~- ~- 1\n~? ~a: ~\
         a:\n ~a: 1\n~[1],~&a ~*a ~!!a ~%A\n~---\n~|\n~\t~\u{fffd}~1,~{},~[],~\\~>~a";

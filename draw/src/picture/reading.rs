@@ -8,7 +8,6 @@ pub(super) fn of_class<'a, 'i>(document: &'a Document<'i>, class: &str) -> Vec<N
     document.descendants().filter(is).collect()
 }
 
-/// An attribute that is a number.
 pub(super) fn number(node: Node, name: &str) -> f64 {
     node.attribute(name).unwrap().parse().unwrap()
 }

@@ -104,7 +104,6 @@ struct Room<'a> {
 }
 
 impl Room<'_> {
-    /// The cost of a curve alone.
     fn cost_alone(&self, route: &UnroutedEdge, curve: &Curve) -> f64 {
         let base = self.discs.size.base;
         let mut cost = 0.16 * curve.length() / base;

@@ -29,7 +29,6 @@ pub(super) struct Discs<'a> {
 }
 
 impl Discs<'_> {
-    /// The doors at the ends of an edge.
     pub(super) fn doors(&self, edge: &UnroutedEdge) -> [DoorKnob; 2] {
         [0, 1].map(|end| {
             let vertex = edge.vertices[end];
@@ -37,7 +36,6 @@ impl Discs<'_> {
         })
     }
 
-    /// The plain curve of an edge.
     pub(super) fn plain(&self, edge: &UnroutedEdge) -> Curve {
         let [from, to] = self.doors(edge);
         if edge.vertices[0] == edge.vertices[1] {

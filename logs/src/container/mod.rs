@@ -28,14 +28,15 @@ use super::{
     source::Source,
 };
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    Bag,
-    Mcap,
-    Carmen,
-    Events,
-    Database,
-    Folder,
+toposlam_model::words! {
+    Format {
+        Bag = "bag",
+        Mcap = "mcap",
+        Carmen = "carmen",
+        Events = "events",
+        Database = "db3",
+        Folder = "rosbag2",
+    }
 }
 
 impl Format {

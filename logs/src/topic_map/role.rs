@@ -21,27 +21,7 @@ const CARMEN_READING: &str = "carmen/LASER_READING";
 const CARMEN_RAW: &str = "carmen/RAWLASER1";
 const CARMEN_RAW_REAR: &str = "carmen/RAWLASER2";
 
-macro_rules! words {
-    ($($(#[$meta:meta])* $name:ident { $($(#[$doc:meta])* $value:ident = $word:literal,)* })*) => {$(
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum $name {
-            $($(#[$doc])* $value,)*
-        }
-
-        impl $name {
-            pub const ALL: [Self; [$($word),*].len()] = [$(Self::$value),*];
-
-            pub fn name(self) -> &'static str {
-                match self {
-                    $(Self::$value => $word,)*
-                }
-            }
-        }
-    )*};
-}
-
-words! {
+toposlam_model::words! {
     Role {
         Image = "image",
         Scan = "scan",

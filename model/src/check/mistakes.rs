@@ -16,39 +16,22 @@ use crate::{
     world::{GraphWorld, RefusedAction, State, World},
 };
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum MistakeKind {
-    /// The number of doors is wrong.
-    Degree,
-    /// The marker is seen where it does not lie.
-    MarkerInvented,
-    /// The marker is not seen where it lies.
-    MarkerMissed,
-    /// The marker is seen where it lies, but along another door.
-    MarkerTurned,
-    /// The robot is carried to another place, or turned, and does not feel it. All percepts are true.
-    Carried,
+crate::words! {
+    MistakeKind {
+        /// The number of doors is wrong.
+        Degree = "wrong degree",
+        /// The marker is seen where it does not lie.
+        MarkerInvented = "marker invented",
+        /// The marker is not seen where it lies.
+        MarkerMissed = "marker missed",
+        /// The marker is seen where it lies, but along another door.
+        MarkerTurned = "marker turned",
+        /// The robot is carried to another place, or turned, and does not feel it. All percepts are true.
+        Carried = "robot carried",
+    }
 }
 
-pub const MISTAKE_KINDS: [MistakeKind; 5] = [
-    MistakeKind::Degree,
-    MistakeKind::MarkerInvented,
-    MistakeKind::MarkerMissed,
-    MistakeKind::MarkerTurned,
-    MistakeKind::Carried,
-];
-
 impl MistakeKind {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Degree => "wrong degree",
-            Self::MarkerInvented => "marker invented",
-            Self::MarkerMissed => "marker missed",
-            Self::MarkerTurned => "marker turned",
-            Self::Carried => "robot carried",
-        }
-    }
-
     /// The mistakes of this kind at a place, with degrees up to twice the number of edges.
     fn mistakes(self, graph: &EmbeddedGraph, pose: Dart, truth: Percept) -> Vec<MistakeEffect> {
         let Percept { degree, sighting } = truth;
@@ -72,12 +55,6 @@ impl MistakeKind {
             }
             _ => Vec::new(),
         }
-    }
-}
-
-impl fmt::Display for MistakeKind {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        out.pad(self.name())
     }
 }
 
@@ -220,7 +197,7 @@ pub struct UndetectedMistake {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MistakeTally {
     pub starts: u64,
-    /// For each of the [`MISTAKE_KINDS`], how the runs ended.
+    /// For each of the [kinds](MistakeKind::ALL), how the runs ended.
     pub counts: [MistakeCounts; 5],
     /// For each of them, the first run that ends with a wrong map; if there is none, with a wrong pose.
     pub first: [Option<UndetectedMistake>; 5],
@@ -317,7 +294,7 @@ impl MistakenRuns {
         let least = visits.len() as u64 - 1;
         tally.moves += least;
         for (moves, &(pose, truth)) in (0..).zip(&visits) {
-            for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
+            for (at, kind) in MistakeKind::ALL.into_iter().enumerate() {
                 for effect in kind.mistakes(graph, pose, truth) {
                     let mistake = Mistake { moves, truth, effect };
                     let counts = &mut tally.counts[at];
@@ -393,7 +370,7 @@ mod tests {
                 assert_eq!(with.all().wrong_map, 0, "{algorithm}, {edges}: {:?}", with.first);
                 assert!(edges == 1 || without.all().wrong_map > 0, "{algorithm}, {edges}");
                 // A pose is wrong only if the robot was carried, on the audit.
-                let percepts = &with.counts[..MISTAKE_KINDS.len() - 1];
+                let percepts = &with.counts[..MistakeKind::ALL.len() - 1];
                 assert!(percepts.iter().all(|counts| counts.wrong_pose == 0), "{algorithm}");
             }
         }
@@ -406,7 +383,7 @@ mod tests {
             let all = tally.all();
             assert_eq!(all.right + all.wrong_pose, all.runs(), "{edges}: {all:?}");
             // The robot was carried on the last way of the audit.
-            assert_eq!(all.wrong_pose, tally.counts[MISTAKE_KINDS.len() - 1].wrong_pose);
+            assert_eq!(all.wrong_pose, tally.counts[MistakeKind::ALL.len() - 1].wrong_pose);
         }
     }
 

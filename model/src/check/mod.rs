@@ -17,7 +17,7 @@ pub use every_way::{DEFAULT_STATE_BUDGET, RunChoices, every_way};
 pub use guess::determines_world;
 pub use judge::{FalseStep, first_false_step, judge, judge_map, judge_start};
 pub use mistakes::{
-    MISTAKE_KINDS, Mistake, MistakeCheck, MistakeCounts, MistakeEffect, MistakeKind, MistakeTally,
+    Mistake, MistakeCheck, MistakeCounts, MistakeEffect, MistakeKind, MistakeTally,
     UndetectedMistake,
 };
 pub use one_by_one::{Check, Shard, ShardError, check_worlds};

@@ -5,7 +5,6 @@
 //! are radians counter-clockwise seen from above, relative to the robot's heading, in (-pi, pi].
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use std::fmt;
 
 use crate::percept::Door;
 
@@ -46,11 +45,12 @@ pub enum HallwayStatus {
     Unclear(Unclear),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unclear {
-    ClustersAhead,
-    SizesDiffer,
-    ClusterBehind,
+crate::words! {
+    Unclear {
+        ClustersAhead = "clusters-ahead",
+        SizesDiffer = "sizes-differ",
+        ClusterBehind = "cluster-behind",
+    }
 }
 
 // paper: drive.junction
@@ -72,13 +72,14 @@ pub struct CentreLine {
     pub direction: f64,
 }
 
-/// Where the robot is along the entry centre line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Turning {
-    Before,
-    /// Within [`AT`] of it.
-    At,
-    Past,
+crate::words! {
+    /// Where the robot is along the entry centre line.
+    Turning {
+        Before = "before",
+        /// Within [`AT`] of it.
+        At = "at",
+        Past = "past",
+    }
 }
 
 /// How near the turning point counts as being at it, in metres along the entry centre line.
@@ -93,12 +94,13 @@ pub struct MarkerView {
     pub door: Option<Door>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reason {
-    NoFloor,
-    FewWalls,
-    NothingFits,
-    Ambiguous,
+crate::words! {
+    Reason {
+        NoFloor = "no-floor",
+        FewWalls = "few-walls",
+        NothingFits = "nothing-fits",
+        Ambiguous = "ambiguous",
+    }
 }
 
 /// An angle brought into (-pi, pi].
@@ -142,36 +144,5 @@ impl JunctionView {
             .min_by(|&one, &other| away(&self.doors[one]).total_cmp(&away(&self.doors[other])));
         self.doors.rotate_left(nearest.unwrap_or(0));
         self
-    }
-}
-
-impl fmt::Display for Unclear {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::ClustersAhead => "clusters-ahead",
-            Self::SizesDiffer => "sizes-differ",
-            Self::ClusterBehind => "cluster-behind",
-        })
-    }
-}
-
-impl fmt::Display for Turning {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::Before => "before",
-            Self::At => "at",
-            Self::Past => "past",
-        })
-    }
-}
-
-impl fmt::Display for Reason {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::NoFloor => "no-floor",
-            Self::FewWalls => "few-walls",
-            Self::NothingFits => "nothing-fits",
-            Self::Ambiguous => "ambiguous",
-        })
     }
 }

@@ -1,20 +1,21 @@
 //! The classes of worlds that can be enumerated.
 
-use std::{fmt, str::FromStr};
+use std::str::FromStr;
 
 use thiserror::Error;
 
 use crate::embedded_graph::EmbeddedGraph;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Class {
-    /// All embedded graphs: loops and parallel edges allowed, any genus.
-    Multigraph,
-    /// No loops and no parallel edges; any genus.
-    Simple,
-    /// Simple, and no vertex of degree more than 3: dead ends, bends and T junctions.
-    Corridor,
-    Planar,
+crate::words! {
+    Class {
+        /// All embedded graphs: loops and parallel edges allowed, any genus.
+        Multigraph = "multigraph",
+        /// No loops and no parallel edges; any genus.
+        Simple = "simple",
+        /// Simple, and no vertex of degree more than 3: dead ends, bends and T junctions.
+        Corridor = "corridor",
+        Planar = "planar",
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -22,17 +23,6 @@ pub enum Class {
 pub struct UnknownClass(String);
 
 impl Class {
-    pub const ALL: [Self; 4] = [Self::Multigraph, Self::Simple, Self::Corridor, Self::Planar];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Multigraph => "multigraph",
-            Self::Simple => "simple",
-            Self::Corridor => "corridor",
-            Self::Planar => "planar",
-        }
-    }
-
     pub fn is_simple(self) -> bool {
         self != Self::Multigraph
     }
@@ -46,12 +36,6 @@ impl Class {
         (!self.is_simple() || graph.is_simple())
             && graph.vertices().all(fits)
             && (self != Self::Planar || graph.genus() == 0)
-    }
-}
-
-impl fmt::Display for Class {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        out.pad(self.name())
     }
 }
 

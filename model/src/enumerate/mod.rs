@@ -49,7 +49,6 @@ pub enum SizeError {
     TooManyEdges(usize),
 }
 
-/// An enumerated graph.
 #[derive(Clone, Copy, Debug)]
 pub struct EnumeratedGraph<'g> {
     /// The embedded graph; darts are numbered as met from the start, which faces dart 0.

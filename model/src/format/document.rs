@@ -36,6 +36,11 @@ impl TextPosition {
         let column = before[line_start..].chars().count() + 1;
         Self { line_column: Some((line, column)), key: Box::default() }
     }
+
+    /// The error of this kind here.
+    pub fn error<K>(self, kind: K) -> FileError<K> {
+        FileError { position: self, kind }
+    }
 }
 
 impl fmt::Display for TextPosition {
@@ -44,6 +49,21 @@ impl fmt::Display for TextPosition {
             write!(formatter, "line {line}, column {column}: ")?;
         }
         if self.key.is_empty() { Ok(()) } else { write!(formatter, "{}: ", self.key) }
+    }
+}
+
+/// What is wrong with a file of a kind, and where.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{position}{kind}")]
+pub struct FileError<K> {
+    pub position: TextPosition,
+    #[source]
+    pub kind: K,
+}
+
+impl<K: From<DocumentErrorKind>> From<DocumentError> for FileError<K> {
+    fn from(DocumentError { position, kind }: DocumentError) -> Self {
+        position.error(kind.into())
     }
 }
 

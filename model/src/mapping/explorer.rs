@@ -119,13 +119,12 @@ pub struct ExplorerInfo {
     pub order: CostOrder,
 }
 
-/// The order of a cost in the numbers of edges, `m`, and vertices, `n`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CostOrder {
-    /// `m n`.
-    EdgesVertices,
-    /// `m^2 n`.
-    EdgesSquaredVertices,
+crate::words! {
+    /// The order of a cost in the numbers of edges, `m`, and vertices, `n`.
+    CostOrder {
+        EdgesVertices = "m n",
+        EdgesSquaredVertices = "m^2 n",
+    }
 }
 
 impl CostOrder {
@@ -135,15 +134,6 @@ impl CostOrder {
             Self::EdgesVertices => edges * vertices,
             Self::EdgesSquaredVertices => edges * edges * vertices,
         }
-    }
-}
-
-impl fmt::Display for CostOrder {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        out.write_str(match self {
-            Self::EdgesVertices => "m n",
-            Self::EdgesSquaredVertices => "m^2 n",
-        })
     }
 }
 

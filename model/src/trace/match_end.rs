@@ -14,12 +14,14 @@ use crate::{
 pub enum MatchEnd {
     /// To the end of both: the map is complete.
     Mapped,
-    /// To the end of the trace.
     EndOfTrace,
     /// To an event that it does not have.
     Departure(Departure),
     /// To an event at which it would know more darts than a bound allows. What follows is not matched.
-    Bound { event: TraceEvent, bound: usize },
+    Bound {
+        event: TraceEvent,
+        bound: usize,
+    },
 }
 
 /// The first event of a trace that no run of an algorithm has.

@@ -2,6 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use thiserror::Error;
 
 use super::{MarkerCarrier, World};
@@ -48,6 +49,31 @@ impl fmt::Display for Action {
             Self::Take(door) => write!(out, "{}", door.0),
             Self::PickUp => write!(out, "pick-up"),
             Self::Drop => write!(out, "drop"),
+        }
+    }
+}
+
+/// A door is a number, another action is a word.
+impl Serialize for Action {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Take(door) => door.serialize(serializer),
+            Self::PickUp | Self::Drop => serializer.collect_str(self),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Action {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Written {
+            Door(u32),
+            Word(String),
+        }
+        match Written::deserialize(deserializer)? {
+            Written::Door(door) => Ok(Self::Take(Door(door))),
+            Written::Word(word) => word.parse().map_err(de::Error::custom),
         }
     }
 }

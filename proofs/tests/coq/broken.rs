@@ -7,7 +7,6 @@ use super::{Compiled, check, compiled, folder, source, text};
 
 /// The development with something changed in one file.
 struct Changed {
-    /// Its sources.
     sources: PathBuf,
     /// Where it is compiled, as far as nothing has changed.
     compiled: PathBuf,

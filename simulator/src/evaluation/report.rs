@@ -140,15 +140,16 @@ pub const CENTIMETRES: ErrorUnit = ErrorUnit { name: "centimetres", short: "cm",
 pub const QUANTILES: [(f64, &str); 4] =
     [(0.5, "median"), (0.95, "95 %"), (0.99, "99 %"), (1.0, "most")];
 
-/// Whether a target is met, by the one-sided intervals of the rate with a confidence of 95 %.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum TargetStatus {
-    /// The upper bound is within the target, or there is no target.
-    Met,
-    /// The target lies between the bounds: the sample is too small.
-    NotShown,
-    /// The lower bound is beyond the target.
-    Missed,
+toposlam_model::words! {
+    /// Whether a target is met, by the one-sided intervals of the rate with a confidence of 95 %.
+    TargetStatus {
+        /// The upper bound is within the target, or there is no target.
+        Met = "met",
+        /// The target lies between the bounds: the sample is too small.
+        NotShown = "not shown",
+        /// The lower bound is beyond the target.
+        Missed = "missed",
+    }
 }
 
 impl TargetStatus {
@@ -160,14 +161,6 @@ impl TargetStatus {
             Self::Met
         } else {
             Self::NotShown
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Met => "met",
-            Self::NotShown => "not shown",
-            Self::Missed => "missed",
         }
     }
 }

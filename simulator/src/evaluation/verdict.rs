@@ -1,6 +1,6 @@
 //! Compares scenes with the ground truth.
 
-use std::{f64::consts::FRAC_PI_4, fmt};
+use std::f64::consts::FRAC_PI_4;
 
 use nalgebra::Point2;
 use toposlam_model::{
@@ -17,19 +17,20 @@ use crate::{
     truth::{JunctionTruth, Truth},
 };
 
-/// The verdict on a scene's place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum PlaceVerdict {
-    Right,
-    Unknown,
-    /// A junction was reported as a hallway.
-    HallwayForJunction,
-    /// A hallway was reported as a junction.
-    JunctionForHallway,
-    /// A junction was reported as another kind.
-    WrongKind,
-    /// The kind is right, but the entry door is wrong.
-    WrongEntry,
+toposlam_model::words! {
+    /// The verdict on a scene's place.
+    PlaceVerdict {
+        Right = "right",
+        Unknown = "unknown",
+        /// A junction was reported as a hallway.
+        HallwayForJunction = "hallway-for-junction",
+        /// A hallway was reported as a junction.
+        JunctionForHallway = "junction-for-hallway",
+        /// A junction was reported as another kind.
+        WrongKind = "wrong-kind",
+        /// The kind is right, but the entry door is wrong.
+        WrongEntry = "wrong-entry",
+    }
 }
 
 impl PlaceVerdict {
@@ -169,19 +170,6 @@ fn is_on(marker: &MarkerView, position: [f64; 2]) -> bool {
     let (axis, off) = (unit(marker.axis), Point2::from(position) - Point2::from(marker.position));
     axis.dot(&off).abs() <= MARKER_LENGTH / 2.0 + MARKER_OFF
         && axis.perp(&off).abs() <= MARKER_WIDTH / 2.0 + MARKER_OFF
-}
-
-impl fmt::Display for PlaceVerdict {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.pad(match self {
-            Self::Right => "right",
-            Self::Unknown => "unknown",
-            Self::HallwayForJunction => "hallway-for-junction",
-            Self::JunctionForHallway => "junction-for-hallway",
-            Self::WrongKind => "wrong-kind",
-            Self::WrongEntry => "wrong-entry",
-        })
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Options for rendered images: their size, the look of the building, and effects.
 
-use crate::{BuildingLook, EffectSettings, Effects, LOOKS, view_sampler::WhichEffects};
+use crate::{BuildingLook, EffectSettings, Effects, LOOKS};
 use clap::{
     ValueEnum,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
@@ -21,14 +21,6 @@ pub enum ImageSize {
 }
 
 impl ImageSize {
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Small => "640x480",
-            Self::Large => "1280x960",
-        }
-    }
-
     /// Width and height.
     pub fn pixels(self) -> [u32; 2] {
         match self {
@@ -44,37 +36,38 @@ pub struct Appearance {
     /// Look of the building
     #[arg(long, value_name = "NAME", default_value = LOOKS[0].name, value_parser = looks())]
     pub look: &'static BuildingLook,
-    /// Effects that make images harder to read
-    #[arg(long, default_value = "default", value_name = "WHICH")]
-    effects: WhichEffects,
-    /// Set one effect (repeatable); they are listed by `toposlam draw --help`
-    #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
-    effect: Vec<EffectSetting>,
+    /// Set one effect that makes images harder to read; none sets all others to nothing (repeatable). They are
+    /// listed by `toposlam draw --help`
+    #[arg(long, value_name = "NAME=VALUE", value_parser = read_effect)]
+    effect: Vec<EffectOption>,
+}
+
+/// An effect on the command line.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EffectOption {
+    /// Effects that are not set are off. Without this, they are drawn from the seed.
+    None,
+    Set(EffectSetting),
 }
 
 pub type EffectSetting = (String, f64);
 
 impl Appearance {
-    /// The options that differ from the defaults.
-    pub fn arguments(&self) -> Vec<(&'static str, String)> {
-        let look = (self.look.name != LOOKS[0].name).then(|| ("--look", self.look.name.to_owned()));
-        let none =
-            matches!(self.effects, WhichEffects::None).then(|| ("--effects", "none".to_owned()));
-        let set = self.effect.iter().map(|(name, value)| ("--effect", format!("{name}={value}")));
-        look.into_iter().chain(none).chain(set).collect()
-    }
-
-    /// The effects drawn from a seed.
+    /// The effects that are set; the others are drawn from a seed, or off.
     pub fn effects(&self, seed: u64) -> Result<Effects, CliError> {
-        let effects = match self.effects {
-            WhichEffects::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed)),
-            WhichEffects::None => Effects::plain(),
+        let effects = if self.effect.contains(&EffectOption::None) {
+            Effects::plain()
+        } else {
+            Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed))
         };
-        Ok(settings(&self.effect)?.applied(effects))
+        let set = self.effect.iter().filter_map(|effect| match effect {
+            EffectOption::None => None,
+            EffectOption::Set(setting) => Some(setting.clone()),
+        });
+        Ok(settings(&set.collect::<Vec<_>>())?.applied(effects))
     }
 }
 
-/// Settings of effects by name.
 pub fn settings(given: &[EffectSetting]) -> Result<EffectSettings, CliError> {
     for (index, (name, _)) in given.iter().enumerate() {
         if given[..index].iter().any(|(earlier, _)| earlier == name) {
@@ -97,6 +90,13 @@ pub fn looks() -> impl TypedValueParser<Value = &'static BuildingLook> {
     PossibleValuesParser::new(looks).try_map(|name| {
         BuildingLook::named(&name).ok_or_else(|| format!("there is no look `{name}`"))
     })
+}
+
+fn read_effect(text: &str) -> Result<EffectOption, String> {
+    match text {
+        "none" => Ok(EffectOption::None),
+        setting => read_setting(setting).map(EffectOption::Set),
+    }
 }
 
 /// Parses the setting of an effect.

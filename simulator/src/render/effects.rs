@@ -6,7 +6,6 @@ use rand::{Rng, RngExt};
 use thiserror::Error;
 use toposlam_vision::camera::{Camera, OpticsModel, SphericalMirror};
 
-/// The scope of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EffectScope {
     /// The building: the effect is the same in all of its images.

@@ -29,7 +29,6 @@ pub enum FloorCovering {
     },
 }
 
-/// The look of a building.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildingLook {
     pub name: &'static str,

@@ -10,6 +10,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     format::{named_world::NamedWorld, world_file},
     mapping::MappingAlgorithm,
+    world::Action,
 };
 
 use crate::cli::{
@@ -109,7 +110,7 @@ pub(super) struct FailureLine {
 pub(super) enum FailedRun {
     Explorer {
         message: String,
-        last_actions: Vec<Value>,
+        last_actions: Vec<Action>,
         /// The end of the standard error, if the process was ended.
         stderr: String,
     },

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use toposlam_model::{
     format::world_file,
     mapping::{CostOrder, MappingAlgorithm},
+    world::Action,
 };
 
 use super::line::{FailedRun, FailureLine, SizeLine};
@@ -186,11 +187,7 @@ impl<'o> CheckReport<'o> {
                 );
                 print_paragraph(self.out, &text)?;
                 if !last_actions.is_empty() {
-                    let plain = |action: &Value| action.as_str().map(str::to_owned);
-                    let actions = last_actions.iter();
-                    let actions: Vec<_> = actions
-                        .map(|action| plain(action).unwrap_or_else(|| action.to_string()))
-                        .collect();
+                    let actions: Vec<_> = last_actions.iter().map(Action::to_string).collect();
                     print_hanging(self.out, "  last doors  ", &actions.join(" "))?;
                 }
                 if !stderr.is_empty() {

@@ -3,22 +3,18 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
-use serde_json::Value;
-use toposlam_model::{ambiguity::PlacedRobot, world::Action};
+use toposlam_model::{ambiguity::PlacedRobot, percept::Percept, world::Action};
 
 use super::{CliError, robot_comparison::RobotComparison};
-use crate::cli::{
-    json::{action_json, percept_json},
-    text::{print_hanging, print_rows},
-};
+use crate::cli::text::{print_hanging, print_rows};
 
 /// A walk with its percepts: at the start and after each action.
 #[derive(Default, Serialize)]
 pub(super) struct JointWalk {
     /// Where the robots start.
     starts: [String; 2],
-    actions: Vec<Value>,
-    percepts: Vec<[Value; 2]>,
+    actions: Vec<Action>,
+    percepts: Vec<[Percept; 2]>,
     /// Why they stopped, if only one of them could go on.
     stopped: Option<String>,
     stopped_in: Option<&'static str>,
@@ -31,7 +27,7 @@ pub(super) struct JointWalk {
 impl JointWalk {
     fn add_percepts(&mut self, action: String, robots: &[PlacedRobot; 2]) {
         let [one, other] = robots.each_ref().map(PlacedRobot::sensed);
-        self.percepts.push([one, other].map(percept_json));
+        self.percepts.push([one, other]);
         let differs = if one == other { "" } else { "<- differs" };
         self.rows.push([action, one.to_string(), other.to_string(), differs.to_owned()]);
     }
@@ -58,7 +54,7 @@ impl RobotComparison<'_> {
         for (&action, number) in actions.iter().zip(1..) {
             let (world, cause) = match robots.each_mut().map(|robot| robot.act(action)) {
                 [Ok(()), Ok(())] => {
-                    walk.actions.push(action_json(action));
+                    walk.actions.push(action);
                     walk.add_percepts(action.to_string(), &robots);
                     continue;
                 }

@@ -17,10 +17,7 @@ use toposlam_model::{
 
 use super::{CliError, walk_page};
 use crate::{
-    cli::{
-        json::action_json,
-        text::{counted, grouped, print_columns, print_hanging, print_paragraph},
-    },
+    cli::text::{counted, grouped, print_columns, print_hanging, print_paragraph},
     page::MOST_PAIRS,
 };
 
@@ -113,7 +110,6 @@ impl<'w> RobotComparison<'w> {
         }
     }
 
-    /// The names of the worlds.
     pub(super) fn names(&self) -> [&'w str; 2] {
         self.worlds.map(|world| world.name.as_str())
     }
@@ -168,20 +164,18 @@ impl<'w> RobotComparison<'w> {
             }
             Some(Bisimulation::Classes(classes)) => (None, Some(self.classes_text(classes))),
         };
-        let walk = |walk: &Option<Walk>| -> Option<Value> {
-            Some(walk.as_ref()?.actions.iter().copied().map(action_json).collect())
-        };
-        let first = others.first().filter(|_| bisimulation.is_none());
+        let actions = others.iter().map(|(_, walk)| Some(&walk.as_ref()?.actions));
+        let walks: Vec<_> = actions.collect();
         json!({
             "marker": marker.name(),
             "distinguishable": bisimulation.is_none(),
-            "walk": first.and_then(|(_, first)| walk(first)),
+            "walk": walks.first().filter(|_| bisimulation.is_none()),
             "relation": pairs,
             "classes": classes,
             "relation_starts": bisimulation.as_ref().map(|_| self.starts_text()),
             "start": a.start_text(*start),
             "starts": others.iter().map(|(pose, _)| b.start_text(*pose)).collect::<Vec<_>>(),
-            "walks": others.iter().map(|(_, other)| walk(other)).collect::<Vec<_>>(),
+            "walks": walks,
         })
     }
 

@@ -13,7 +13,6 @@ const BEFORE: usize = 6;
 /// The number of events of a shorter log that are shown.
 const SHORT: usize = 12;
 
-/// Prints the report of a log.
 pub(super) fn print(out: &mut dyn Write, report: &LogReport) -> io::Result<()> {
     match &report.divergence {
         None => {

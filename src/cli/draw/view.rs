@@ -137,17 +137,16 @@ pub(super) fn only_with_a_pose(option: Arg) -> Arg {
     const NOT_IN_A_VIEW: [&str; 2] = ["start", "marker"];
     match option.get_id().as_str() {
         "effect" => option
-            .help("Set one effect (repeatable); they are listed below")
+            .help("Set one effect; none sets all others to nothing (repeatable). They are listed below")
             .requires("pose")
             .conflicts_with_all(NOT_IN_A_VIEW),
-        "calibration" | "size" | "look" | "effects" | "seed" | "with_marker" | "labels" => {
+        "calibration" | "size" | "look" | "seed" | "with_marker" | "labels" => {
             option.requires("pose").conflicts_with_all(NOT_IN_A_VIEW)
         }
         _ => option,
     }
 }
 
-/// The list of effects.
 pub(super) fn list_of_effects() -> String {
     let mut text = b"Effects, with the range from which each is drawn:\n".to_vec();
     for (scope, title) in

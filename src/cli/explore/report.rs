@@ -14,7 +14,7 @@ use toposlam_model::{
         FACING, Flaw, MapWalk, MappedWorld, MappingAlgorithm, MappingError, MappingMethod, Observer,
     },
     marker::Marker,
-    world::GraphWorld,
+    world::{Action, GraphWorld},
 };
 
 use crate::cli::{
@@ -48,7 +48,7 @@ pub(super) struct ExploredWorld<'a> {
 #[derive(Serialize)]
 struct RunLine<'a> {
     /// Doors, pick-ups and drops.
-    doors: Vec<Value>,
+    doors: Vec<Action>,
     moves: u64,
     /// With --audit, if the audits agreed with the map.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -147,14 +147,13 @@ impl<'a> ExploredWorld<'a> {
         self.mapped.as_ref().filter(|mapped| !mapped.audited_percepts.is_empty())
     }
 
-    /// All moves.
     fn moves(&self) -> u64 {
         self.journey.moves() + self.audited().map_or(0, |mapped| mapped.audit_moves)
     }
 
     pub(super) fn print_json(
         &self,
-        doors: Vec<Value>,
+        doors: Vec<Action>,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
         let map = self.journey.map();

@@ -8,7 +8,7 @@ use toposlam_model::{
     percept::{Door, Sighting},
 };
 use toposlam_proofs::{
-    CaseReplay, CaseResult, ChoiceOdometer, Choose, Exhibit, Stop,
+    CaseReplay, CaseResult, ChoiceOdometer, Choose, Exhibit, Stop, Theorem,
     choose::{claim, given},
     draw,
     lemma::{Exhaustive, Sampled},
@@ -26,8 +26,8 @@ fn arguments(line: &str) -> ProofsArguments {
 fn run(lemmas: &[Lemma], line: &str) -> (Result<Outcome, CliError>, String) {
     let mut out = Vec::new();
     let theorems = [Theorem::new("round", "It turns.".into(), "2.2".into())];
-    let lemmas: Vec<_> = lemmas.iter().collect();
-    let outcome = arguments(line).run_with((&lemmas, &theorems), &mut out);
+    let all = Statements { lemmas: lemmas.iter().collect(), theorems: theorems.to_vec() };
+    let outcome = arguments(line).run_with(&all, &mut out);
     (outcome, String::from_utf8(out).unwrap())
 }
 
@@ -312,7 +312,7 @@ fn a_check_can_be_stopped() {
         if options == "--json" {
             mem::swap(&mut report.text, &mut report.json);
         }
-        let outcome = report.totals(2, &[many.check(&AtOnce)]);
+        let outcome = report.totals(&CheckTotals::new(2, &[many.check(&AtOnce)]));
         assert_eq!(outcome.unwrap(), Outcome::Incomplete);
         let text = String::from_utf8(out).unwrap();
         assert!(text.ends_with(end), "{text}");

@@ -12,8 +12,8 @@ use super::{
     ViewingRay,
     mei::{self, MATRIX},
     optics_file::{OpticsFileError, within},
+    pixel_matrix::PixelMatrix,
     root::{first_change, polynomial, root},
-    scaled_place,
     yaml::Values,
 };
 use crate::geometry;
@@ -32,9 +32,7 @@ pub struct KannalaBrandt {
     pub(super) image: Option<[u32; 2]>,
     /// Of odd powers of the angle, from the third on.
     coefficients: [f64; 4],
-    focal: [f64; 2],
-    skew: f64,
-    pub(super) centre: Point2<f64>,
+    matrix: PixelMatrix,
     /// The angle up to which points are seen farther and farther out.
     reach: f64,
 }
@@ -68,11 +66,10 @@ impl KannalaBrandt {
         let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
         let known = mei::known_keys(&CAMODOCAL);
         let found = mei::values(text, &known)?;
-        let (coefficients, [focal_u, skew, centre_u, focal_v, centre_v]) = numbers(&found)?;
+        let (coefficients, matrix) = numbers(&found)?;
         for coefficient in coefficients {
             within("a coefficient of the distortion", coefficient, [-1e3, 1e3])?;
         }
-        let focal_range = [1.0, 1e6];
         // Points behind the lens are seen up to half a turn away. The radius grows up to here:
         let [k1, k2, k3, k4] = coefficients;
         let growth = [1.0, 0.0, 3.0 * k1, 0.0, 5.0 * k2, 0.0, 7.0 * k3, 0.0, 9.0 * k4];
@@ -88,33 +85,18 @@ impl KannalaBrandt {
             ahead,
             image: mei::image(&found)?,
             coefficients,
-            focal: [
-                within("the focal length across", focal_u, focal_range)?,
-                within("the focal length down", focal_v, focal_range)?,
-            ],
-            skew: within("the skew", skew, [-100.0, 100.0])?,
-            centre: Point2::new(
-                within("the centre's u", centre_u, [0.0, 16384.0])?,
-                within("the centre's v", centre_v, [0.0, 16384.0])?,
-            ),
+            matrix: PixelMatrix::new(matrix)?,
             reach,
         })
     }
 
     pub(super) fn scaled(&self, factor: f64, image: [u32; 2]) -> Self {
-        Self {
-            image: Some(image),
-            focal: self.focal.map(|focal| factor * focal),
-            skew: factor * self.skew,
-            centre: scaled_place(self.centre, factor),
-            ..self.clone()
-        }
+        Self { image: Some(image), matrix: self.matrix.scaled(factor), ..self.clone() }
     }
 
     pub(super) fn ray(&self, pixel: Point2<f64>) -> Option<ViewingRay> {
-        let off = pixel - self.centre;
-        let y = off.y / self.focal[1];
-        let at = Vector2::new((off.x - self.skew * y) / self.focal[0], -y);
+        let [x, y] = self.matrix.plane(pixel).into();
+        let at = Vector2::new(x, -y);
         let radius = at.norm();
         if radius.is_nan() || radius > self.radius(self.reach).0 {
             return None;
@@ -138,7 +120,7 @@ impl KannalaBrandt {
 
     /// The pixel that looks straight down; that of the optical axis if none does.
     pub(super) fn middle(&self) -> Point2<f64> {
-        self.pixel_along(-Vector3::z()).unwrap_or(self.centre)
+        self.pixel_along(-Vector3::z()).unwrap_or(self.matrix.centre)
     }
 
     fn pixel_along(&self, direction: Vector3<f64>) -> Option<Point2<f64>> {
@@ -149,9 +131,7 @@ impl KannalaBrandt {
             return None;
         }
         let scale = if across > 0.0 { self.radius(angle).0 / across } else { 0.0 };
-        let [x, y] = [scale * direction.x, -scale * direction.y];
-        let u = self.focal[0] * x + self.skew * y + self.centre.x;
-        Some(Point2::new(u, self.focal[1] * y + self.centre.y))
+        Some(self.matrix.pixel(Vector2::new(scale * direction.x, -scale * direction.y)))
     }
 
     /// The distance from the middle of the plane at an angle from the axis, and its slope.
@@ -171,11 +151,7 @@ impl KannalaBrandt {
 fn numbers(found: &Values<'_>) -> Result<([f64; 4], [f64; 5]), OpticsFileError> {
     if found.has("model_type") {
         mei::expect_model(found, "model_type", "KANNALA_BRANDT")?;
-        let mut numbers = [0.0; 8];
-        for (number, key) in numbers.iter_mut().zip(CAMODOCAL) {
-            *number = found.number(key)?;
-        }
-        let [k1, k2, k3, k4, focal_u, focal_v, u, v] = numbers;
+        let [k1, k2, k3, k4, focal_u, focal_v, u, v] = found.each(CAMODOCAL)?;
         return Ok(([k1, k2, k3, k4], [focal_u, 0.0, u, focal_v, v]));
     }
     if found.has("cam0.camera_model") {
@@ -186,7 +162,6 @@ fn numbers(found: &Values<'_>) -> Result<([f64; 4], [f64; 5]), OpticsFileError> 
         return Ok((coefficients, [focal_u, 0.0, u, focal_v, v]));
     }
     let [matrix, distortion] = MATRIX.map(|keys| found.first_of(&keys));
-    let matrix: [f64; 9] = found.numbers(matrix)?;
-    let coefficients = found.numbers(distortion)?;
-    Ok((coefficients, [matrix[0], matrix[1], matrix[2], matrix[4], matrix[5]]))
+    let matrix = PixelMatrix::numbers(found.numbers(matrix)?);
+    Ok((found.numbers(distortion)?, matrix))
 }

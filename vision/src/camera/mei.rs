@@ -11,8 +11,9 @@ use nalgebra::{Matrix2, Point2, Point3, Vector2, Vector3};
 use super::{
     ViewingRay,
     optics_file::{OpticsFileError, shown, side_of_image, within},
+    pixel_matrix::PixelMatrix,
     root::{first_change, polynomial, root},
-    scaled_place, xml, yaml,
+    xml, yaml,
 };
 
 #[derive(Clone, Debug, PartialEq)]
@@ -26,10 +27,7 @@ pub struct Mei {
     xi: f64,
     radial: [f64; 2],
     tangential: [f64; 2],
-    /// The matrix from the plane to pixels.
-    focal: [f64; 2],
-    skew: f64,
-    pub(super) centre: Point2<f64>,
+    pub(super) matrix: PixelMatrix,
     /// The distance from the middle of the plane up to which the distortion can be inverted.
     reach: f64,
 }
@@ -77,7 +75,7 @@ impl Mei {
         let known = known_keys(&[&CAMODOCAL[..], &XI].concat());
         let found = values(text, &known)?;
         let image = image(&found)?;
-        let (xi, [k1, k2, p1, p2], [focal_u, skew, centre_u, focal_v, centre_v]) =
+        let (xi, [k1, k2, p1, p2], matrix) =
             if found.has("model_type") || found.has("mirror_parameters.xi") {
                 camodocal(&found)?
             } else if found.has("cam0.camera_model") {
@@ -85,7 +83,6 @@ impl Mei {
             } else {
                 omnidir(&found)?
             };
-        let focal_range = [1.0, 1e6];
         Self {
             file: file.to_owned(),
             viewpoint_height,
@@ -93,15 +90,7 @@ impl Mei {
             xi: within("xi", xi, [0.0, 100.0])?,
             radial: [within("k1", k1, [-1e3, 1e3])?, within("k2", k2, [-1e3, 1e3])?],
             tangential: [within("p1", p1, [-1.0, 1.0])?, within("p2", p2, [-1.0, 1.0])?],
-            focal: [
-                within("the focal length across", focal_u, focal_range)?,
-                within("the focal length down", focal_v, focal_range)?,
-            ],
-            skew: within("the skew", skew, [-100.0, 100.0])?,
-            centre: Point2::new(
-                within("the centre's u", centre_u, [0.0, 16384.0])?,
-                within("the centre's v", centre_v, [0.0, 16384.0])?,
-            ),
+            matrix: PixelMatrix::new(matrix)?,
             reach: 0.0,
         }
         .reaching()
@@ -125,20 +114,11 @@ impl Mei {
     const LEAST_SLOPE: f64 = 0.02;
 
     pub(super) fn scaled(&self, factor: f64, image: [u32; 2]) -> Self {
-        Self {
-            image: Some(image),
-            focal: self.focal.map(|focal| factor * focal),
-            skew: factor * self.skew,
-            centre: scaled_place(self.centre, factor),
-            ..self.clone()
-        }
+        Self { image: Some(image), matrix: self.matrix.scaled(factor), ..self.clone() }
     }
 
     pub(super) fn ray(&self, pixel: Point2<f64>) -> Option<ViewingRay> {
-        let off = pixel - self.centre;
-        let y = off.y / self.focal[1];
-        let x = (off.x - self.skew * y) / self.focal[0];
-        let at = self.undistorted(Vector2::new(x, y))?;
+        let at = self.undistorted(self.matrix.plane(pixel))?;
         let square = at.norm_squared();
         let under_root = 1.0 + (1.0 - self.xi * self.xi) * square;
         if under_root.is_nan() || under_root < 0.0 {
@@ -160,10 +140,7 @@ impl Mei {
             return None;
         }
         let (at, _) = self.distorted(at);
-        Some(Point2::new(
-            self.focal[0] * at.x + self.skew * at.y + self.centre.x,
-            self.focal[1] * at.y + self.centre.y,
-        ))
+        Some(self.matrix.pixel(at))
     }
 
     fn distorted(&self, at: Vector2<f64>) -> (Vector2<f64>, Matrix2<f64>) {
@@ -240,11 +217,7 @@ type Numbers = (f64, [f64; 4], [f64; 5]);
 
 fn camodocal(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
     expect_model(found, "model_type", "MEI")?;
-    let mut numbers = [0.0; 9];
-    for (number, key) in numbers.iter_mut().zip(CAMODOCAL) {
-        *number = found.number(key)?;
-    }
-    let [xi, k1, k2, p1, p2, gamma1, u0, gamma2, v0] = numbers;
+    let [xi, k1, k2, p1, p2, gamma1, u0, gamma2, v0] = found.each(CAMODOCAL)?;
     Ok((xi, [k1, k2, p1, p2], [gamma1, 0.0, u0, gamma2, v0]))
 }
 
@@ -298,8 +271,8 @@ pub(super) fn expect_model(
 
 fn omnidir(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
     let [matrix, distortion] = MATRIX.map(|keys| found.first_of(&keys));
-    let matrix: [f64; 9] = found.numbers(matrix)?;
+    let matrix = found.numbers(matrix)?;
     let [xi] = found.numbers(found.first_of(&XI))?;
     let distortion = found.numbers(distortion)?;
-    Ok((xi, distortion, [matrix[0], matrix[1], matrix[2], matrix[4], matrix[5]]))
+    Ok((xi, distortion, PixelMatrix::numbers(matrix)))
 }

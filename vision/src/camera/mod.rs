@@ -12,6 +12,7 @@ mod mei;
 mod morphology;
 mod ocam;
 mod optics_file;
+mod pixel_matrix;
 pub mod rim;
 mod root;
 mod spherical;
@@ -147,7 +148,7 @@ impl Camera {
         match &self.optics {
             OpticsModel::SphericalMirror(mirror) => mirror.centre,
             OpticsModel::OCamCalib(ocam) => ocam.centre,
-            OpticsModel::Mei(mei) => mei.centre,
+            OpticsModel::Mei(mei) => mei.matrix.centre,
             OpticsModel::KannalaBrandt(fisheye) => fisheye.middle(),
         }
     }

@@ -159,6 +159,18 @@ impl<'k> Values<'k> {
         Ok(numbers)
     }
 
+    /// The numbers of these keys.
+    pub(super) fn each<const N: usize>(
+        &self,
+        keys: [&'static str; N],
+    ) -> Result<[f64; N], OpticsFileError> {
+        let mut numbers = [0.0; N];
+        for (number, key) in numbers.iter_mut().zip(keys) {
+            *number = self.number(key)?;
+        }
+        Ok(numbers)
+    }
+
     pub(super) fn number(&self, key: &'static str) -> Result<f64, OpticsFileError> {
         self.numbers(key).map(|[number]| number)
     }

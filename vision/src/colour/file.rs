@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use thiserror::Error;
 use toposlam_model::format::document::{
-    Document, DocumentError, DocumentErrorKind, DocumentTable, DocumentValue, TextPosition,
+    Document, DocumentError, DocumentErrorKind, DocumentTable, DocumentValue, FileError,
 };
 
 use super::{ColourModel, PixelClass, Smoothing, Stripe, StripeKind, hsv::Bin, model::Histogram};
@@ -13,36 +13,18 @@ const VERSION: i64 = 1;
 const CLASSES: [&str; 4] = ["floor", "stripe", "marker", "other"];
 const MOST_PIXELS: i64 = 1_000_000_000_000;
 
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("{position}{kind}")]
-pub struct ColourFileError {
-    pub position: TextPosition,
-    #[source]
-    pub kind: ColourFileErrorKind,
-}
+pub type ColourFileError = FileError<ColourFileErrorKind>;
 
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ColourFileErrorKind {
     #[error(transparent)]
-    Document(DocumentErrorKind),
+    Document(#[from] DocumentErrorKind),
     #[error("this is version {found} of colour files; only version {VERSION} can be read")]
     Version { found: i64 },
     #[error("there are two rows with value {value}, chroma {chroma}, hue {hue}")]
     BinTwice { value: u8, chroma: u8, hue: u16 },
     #[error("there is no colour; floor and stripe must have one")]
     NoColour,
-}
-
-impl ColourFileErrorKind {
-    fn at(self, value: DocumentValue<'_>) -> ColourFileError {
-        ColourFileError { position: value.position(), kind: self }
-    }
-}
-
-impl From<DocumentError> for ColourFileError {
-    fn from(DocumentError { position, kind }: DocumentError) -> Self {
-        Self { position, kind: ColourFileErrorKind::Document(kind) }
-    }
 }
 
 impl StripeKind {
@@ -117,7 +99,7 @@ unknown_below = {:?} # a colour is unknown if each class has a smaller share of 
         let version = document.root().any_table()?.need("version")?;
         let found = version.whole()?;
         if found != VERSION {
-            return Err(ColourFileErrorKind::Version { found }.at(version));
+            return Err(version.position().error(ColourFileErrorKind::Version { found }));
         }
         let keys = ["version", "stripe", "floor", "priors", "smoothing", "histograms"];
         let file = document.root().table(&keys)?;
@@ -141,7 +123,7 @@ unknown_below = {:?} # a colour is unknown if each class has a smaller share of 
         }
         for (class, histogram) in ["floor", "stripe"].into_iter().zip(&histograms) {
             if histogram.is_empty() {
-                return Err(ColourFileErrorKind::NoColour.at(table.need(class)?));
+                return Err(table.need(class)?.position().error(ColourFileErrorKind::NoColour));
             }
         }
         Ok(Self { stripe, floor, priors, smoothing, unknown_below, histograms })
@@ -177,7 +159,7 @@ fn read_histogram(
     let second = rows()?.filter(is_bin).nth(1);
     let Bin { value, chroma, hue } = bin;
     let kind = ColourFileErrorKind::BinTwice { value, chroma, hue };
-    Err(kind.at(second.unwrap_or(table.need(class)?)))
+    Err(second.unwrap_or(table.need(class)?).position().error(kind))
 }
 
 fn read_bin(row: DocumentValue<'_>) -> Result<(Bin, u64), DocumentError> {

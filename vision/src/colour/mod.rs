@@ -21,34 +21,25 @@ pub use model::{ColourModel, Smoothing, Stripe, StripeKind};
 pub use table::{ColourTable, Gain, LitTable};
 pub use training::{ClassPixels, ExampleError, Training, TrainingError};
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[repr(u8)]
-pub enum PixelClass {
-    /// Outside of the view: beyond the mirror, or the robot's own body.
-    #[default]
-    Unseen,
-    /// A colour that the classifier never saw.
-    Unknown,
-    Floor,
-    Stripe,
-    Marker,
-    /// Anything else: walls, doors, posters.
-    Other,
+toposlam_model::words! {
+    #[repr(u8)]
+    #[derive(Default)]
+    PixelClass {
+        /// Outside of the view: beyond the mirror, or the robot's own body.
+        #[default]
+        Unseen = "unseen",
+        /// A colour that the classifier never saw.
+        Unknown = "unknown",
+        Floor = "floor",
+        Stripe = "stripe",
+        Marker = "marker",
+        /// Anything else: walls, doors, posters.
+        Other = "other",
+    }
 }
 
 impl PixelClass {
     pub const LEARNED: [Self; 4] = [Self::Floor, Self::Stripe, Self::Marker, Self::Other];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Unseen => "unseen",
-            Self::Unknown => "unknown",
-            Self::Floor => "floor",
-            Self::Stripe => "stripe",
-            Self::Marker => "marker",
-            Self::Other => "other",
-        }
-    }
 
     /// The colour of a class in a label mask. Pixels to ignore are unseen.
     pub fn label(self) -> [u8; 3] {

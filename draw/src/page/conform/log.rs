@@ -19,7 +19,6 @@ const FEW: usize = 12;
 /// The largest folded trail that is drawn, in vertices.
 const DRAWN: usize = 400;
 
-/// The section of a log.
 pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String {
     let beneath = match level {
         Level::First => Level::Second,

@@ -159,11 +159,6 @@ impl<'a> PathExecution<'a> {
         self.reckoning.way_back()
     }
 
-    /// The distance since the robot last turned to a door, in metres of odometry.
-    pub fn since_turn(&self) -> f64 {
-        self.reckoning.since_turn
-    }
-
     /// One round of the loop, lines 3 to 32, on the scene of an image and the odometry when it was
     /// taken.
     ///

@@ -11,23 +11,17 @@ pub use read::{is_name, read};
 pub use write::{to_json, to_json_text, to_toml};
 
 use super::{
-    document::{DocumentError, DocumentErrorKind, TextPosition},
+    document::{DocumentErrorKind, FileError},
     named_world::StartError,
 };
 use crate::{embedded_graph::ListError, floor_plan::FloorPlanError};
 
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("{position}{kind}")]
-pub struct WorldFileError {
-    pub position: TextPosition,
-    #[source]
-    pub kind: WorldFileErrorKind,
-}
+pub type WorldFileError = FileError<WorldFileErrorKind>;
 
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum WorldFileErrorKind {
     #[error(transparent)]
-    Document(DocumentErrorKind),
+    Document(#[from] DocumentErrorKind),
     #[error(
         "`{name}` is not a name; a name is printable, without quotes, / and \\, and without a space at its \
              ends"
@@ -49,18 +43,6 @@ pub enum WorldFileErrorKind {
     Plan(#[from] Box<FloorPlanError>),
     #[error(transparent)]
     Start(#[from] StartError),
-}
-
-impl WorldFileErrorKind {
-    fn at(self, position: TextPosition) -> WorldFileError {
-        WorldFileError { position, kind: self }
-    }
-}
-
-impl From<DocumentError> for WorldFileError {
-    fn from(DocumentError { position, kind }: DocumentError) -> Self {
-        WorldFileErrorKind::Document(kind).at(position)
-    }
 }
 
 #[cfg(test)]

@@ -51,7 +51,7 @@ pub fn read(bytes: &[u8]) -> Result<NamedWorld, WorldFileError> {
     about.clone_into(&mut world.about);
     if let Some(value) = file.get("positions") {
         if world.plan.is_some() {
-            return Err(WorldFileErrorKind::PositionsOfPlan.at(value.position()));
+            return Err(value.position().error(WorldFileErrorKind::PositionsOfPlan));
         }
         world.positions = Some(positions(&world, &value.any_table()?)?);
     }
@@ -74,10 +74,10 @@ fn graph_key(file: &DocumentTable<'_>) -> Result<&'static str, WorldFileError> {
     .into_iter()
     .filter_map(|(is_given, key)| is_given.then_some(key));
     match (given.next(), given.next()) {
-        (None, _) => Err(WorldFileErrorKind::NoWorld.at(file.position())),
+        (None, _) => Err(file.position().error(WorldFileErrorKind::NoWorld)),
         (Some(key), None) => Ok(key),
         (Some(one), Some(other)) => {
-            Err(WorldFileErrorKind::TwoWorlds { one, other }.at(file.position()))
+            Err(file.position().error(WorldFileErrorKind::TwoWorlds { one, other }))
         }
     }
 }
@@ -141,14 +141,14 @@ fn positions(
     for entry in table.entries() {
         let Some(&vertex) = numbers.get(entry.key) else {
             let vertex = entry.key.escape_debug().to_string();
-            return Err(WorldFileErrorKind::NoVertex { vertex }.at(entry.position()));
+            return Err(entry.position().error(WorldFileErrorKind::NoVertex { vertex }));
         };
         let [x, y] = entry.value.array("a list of two numbers, x and y")?;
         positions[vertex] = Some([x.number()?, y.number()?]);
     }
     let given = positions.into_iter().zip(&world.vertex_names).map(|(position, vertex)| {
         let missing = || WorldFileErrorKind::NoPosition { vertex: vertex.clone() };
-        position.ok_or_else(|| missing().at(table.position()))
+        position.ok_or_else(|| table.position().error(missing()))
     });
     given.collect()
 }
@@ -160,7 +160,7 @@ fn start(world: &NamedWorld, start: &DocumentTable<'_>) -> Result<Dart, WorldFil
             StartError::UnknownVertex { .. } => at,
             _ => facing,
         };
-        WorldFileErrorKind::from(error).at(wrong.position())
+        wrong.position().error(WorldFileErrorKind::from(error))
     })
 }
 
@@ -189,7 +189,7 @@ fn in_lists(table: &DocumentTable<'_>, error: ListError) -> WorldFileError {
     };
     let item = name.and_then(|name| position_in_list(table, vertex, name, skip));
     let position = item.unwrap_or_else(|| position_of_key(table, vertex));
-    WorldFileErrorKind::from(error).at(position)
+    position.error(WorldFileErrorKind::from(error))
 }
 
 fn in_plan(file: &DocumentTable<'_>, error: FloorPlanError) -> WorldFileError {
@@ -222,7 +222,7 @@ fn in_plan(file: &DocumentTable<'_>, error: FloorPlanError) -> WorldFileError {
         }
         FloorPlanError::Graph(_) => file.get("hallways").map(DocumentValue::position),
     };
-    WorldFileErrorKind::from(Box::new(error)).at(position.unwrap_or_default())
+    position.unwrap_or_default().error(WorldFileErrorKind::from(Box::new(error)))
 }
 
 /// Where the hallway between two junctions is, after `skip` others between them.
@@ -269,11 +269,15 @@ fn world_name(value: DocumentValue<'_>) -> Result<&str, WorldFileError> {
 
 fn name(value: DocumentValue<'_>) -> Result<&str, WorldFileError> {
     let text = value.text().map_err(|_| value.expected("a name"))?;
-    if is_name(text) { Ok(text) } else { Err(not_a_name(text).at(value.position())) }
+    if is_name(text) { Ok(text) } else { Err(value.position().error(not_a_name(text))) }
 }
 
 fn key_name<'d>(entry: &DocumentEntry<'d>) -> Result<&'d str, WorldFileError> {
-    if is_name(entry.key) { Ok(entry.key) } else { Err(not_a_name(entry.key).at(entry.position())) }
+    if is_name(entry.key) {
+        Ok(entry.key)
+    } else {
+        Err(entry.position().error(not_a_name(entry.key)))
+    }
 }
 
 /// Whether a text can be a name in a world file: printable characters, but no quotes, no `/` and no `\`,

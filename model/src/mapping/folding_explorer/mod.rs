@@ -122,10 +122,6 @@ impl FoldingRun {
         Self { strict: true, ..Self::default() }
     }
 
-    pub fn trail(&self) -> &FoldedTrail {
-        &self.trail
-    }
-
     /// Whether the map is the world.
     pub fn is_complete(&self) -> bool {
         self.trail.is_complete() && self.map().complete().is_some()

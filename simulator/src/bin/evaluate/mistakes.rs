@@ -4,9 +4,7 @@ use std::{io::Write, path::PathBuf};
 
 use serde_json::{Value, json};
 use toposlam_model::{
-    check::{
-        MISTAKE_KINDS, MistakeCheck, MistakeCounts, MistakeKind, MistakeTally, UndetectedMistake,
-    },
+    check::{MistakeCheck, MistakeCounts, MistakeKind, MistakeTally, UndetectedMistake},
     enumerate::Class,
     format::named_world::NamedWorld,
     mapping::MappingMethod,
@@ -136,7 +134,7 @@ impl EvaluateMistakesArguments {
         writeln!(sheet.text, "  {starts}, {mean:.1} moves on average without a mistake\n")?;
         let heads = ["mistake", ">runs", ">right", ">detected", ">wrong pose", ">wrong map"];
         let all = tally.all();
-        let kinds = MISTAKE_KINDS.into_iter().map(MistakeKind::name).zip(tally.counts);
+        let kinds = MistakeKind::ALL.into_iter().map(MistakeKind::name).zip(tally.counts);
         sheet.table(heads, kinds.chain([("all", all)]).map(|(name, counts)| row(name, counts)))?;
         if method.recovers() {
             let extra = all.extra_moves as f64 / all.right.max(1) as f64;
@@ -146,7 +144,7 @@ impl EvaluateMistakesArguments {
             writeln!(sheet.text)?;
             print_paragraph(&mut sheet.text, &in_words(kind, mistake))?;
         }
-        for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
+        for (at, kind) in MistakeKind::ALL.into_iter().enumerate() {
             let line = mistake_line(kind, tally.counts[at], tally.first[at].as_ref());
             sheet.line("mistake", &line)?;
         }
@@ -188,7 +186,7 @@ fn mistake_line(
 fn first_mistakes(
     tally: &MistakeTally,
 ) -> impl Iterator<Item = (MistakeKind, &UndetectedMistake)> + '_ {
-    let first = MISTAKE_KINDS.into_iter().zip(&tally.first);
+    let first = MistakeKind::ALL.into_iter().zip(&tally.first);
     first.filter_map(|(kind, first)| first.as_ref().map(|first| (kind, first)))
 }
 
@@ -199,7 +197,7 @@ fn violations(tally: &MistakeTally) -> u64 {
         MistakeKind::Carried => counts.wrong_map,
         _ => counts.undetected(),
     };
-    MISTAKE_KINDS.into_iter().zip(tally.counts).map(of).sum()
+    MistakeKind::ALL.into_iter().zip(tally.counts).map(of).sum()
 }
 
 fn row(name: &str, counts: MistakeCounts) -> [String; 6] {

@@ -108,7 +108,6 @@ pub(super) fn measure<R: Send>(
 }
 
 impl ReportArguments {
-    /// Begins the report.
     pub(super) fn begin(&self) -> Result<EvaluationReport, CliError> {
         use_threads(self.threads)?;
         let (text, lines) = (Vec::new(), Vec::new());

@@ -52,7 +52,6 @@ pub(super) struct RobotArguments {
 /// The number of random plans in which driving is measured.
 pub(super) const PLANS: u64 = 40;
 
-/// Random plans.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RandomPlans {
     /// This many, of any size.
@@ -138,7 +137,6 @@ pub(super) fn usual_plans(
     Ok(named)
 }
 
-/// The given looks, or all.
 pub(super) fn given_looks(given: &[&'static BuildingLook]) -> Vec<&'static BuildingLook> {
     if given.is_empty() { LOOKS.iter().collect() } else { given.to_vec() }
 }

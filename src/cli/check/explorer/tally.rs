@@ -13,7 +13,6 @@ use super::{
 };
 use crate::cli::{
     check::line::{FailedRun, FailureLine, SizeLine},
-    json::action_json,
     text::capital,
 };
 
@@ -95,7 +94,7 @@ fn unmapped(
     let about = format!("The explorer {explorer} does not map it: {}", fault.name());
     let run = FailedRun::Explorer {
         message: capital(&format!("the explorer {fault}")),
-        last_actions: actions.into_iter().map(action_json).collect(),
+        last_actions: actions,
         stderr,
     };
     let start = (start.graph, start.facing);

@@ -36,27 +36,19 @@ mod write;
 use std::io;
 
 use thiserror::Error;
-use toposlam_model::format::document::{
-    DocumentError, DocumentErrorKind, DocumentValue, TextPosition,
-};
+use toposlam_model::format::document::{DocumentErrorKind, FileError};
 
 pub use super::optics_file::SIDES;
 use crate::camera::{MaskError, OpticsFileError};
 pub use read::{Files, read};
 pub use write::to_toml;
 
-#[derive(Debug, Error)]
-#[error("{position}{kind}")]
-pub struct CalibrationError {
-    pub position: TextPosition,
-    #[source]
-    pub kind: CalibrationErrorKind,
-}
+pub type CalibrationError = FileError<CalibrationErrorKind>;
 
 #[derive(Debug, Error)]
 pub enum CalibrationErrorKind {
     #[error(transparent)]
-    Document(DocumentErrorKind),
+    Document(#[from] DocumentErrorKind),
     #[error(
         "{rim} pixels do not agree with focal, mirror_radius and mirror_distance, which give a rim of \
          {expected:.1}; they must agree within 2 %"
@@ -86,16 +78,4 @@ pub enum CalibrationErrorKind {
     NoImage,
     #[error("{file}: {error}")]
     Mask { file: String, error: MaskError },
-}
-
-impl CalibrationErrorKind {
-    fn at(self, value: DocumentValue<'_>) -> CalibrationError {
-        CalibrationError { position: value.position(), kind: self }
-    }
-}
-
-impl From<DocumentError> for CalibrationError {
-    fn from(DocumentError { position, kind }: DocumentError) -> Self {
-        Self { position, kind: CalibrationErrorKind::Document(kind) }
-    }
 }

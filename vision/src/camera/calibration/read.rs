@@ -93,10 +93,7 @@ fn of_other_program(bytes: &[u8], error: DocumentError) -> CalibrationError {
     } else {
         return error.into();
     };
-    CalibrationError {
-        position: TextPosition::default(),
-        kind: CalibrationErrorKind::OtherProgram { kind },
-    }
+    TextPosition::default().error(CalibrationErrorKind::OtherProgram { kind })
 }
 
 fn spherical_mirror(value: DocumentValue<'_>) -> Result<([u32; 2], OpticsModel), CalibrationError> {
@@ -130,13 +127,13 @@ fn spherical_mirror(value: DocumentValue<'_>) -> Result<([u32; 2], OpticsModel),
     if let Some(value) = table.get("rim") {
         let rim = value.number_in("the radius of a rim in pixels", RIM)?;
         if (rim - expected).abs() > 0.02 * expected {
-            return Err(CalibrationErrorKind::Rim { rim, expected }.at(value));
+            return Err(value.position().error(CalibrationErrorKind::Rim { rim, expected }));
         }
     }
     if !RIM.contains(&expected) {
         let (&low, &high) = (RIM.start(), RIM.end());
         let kind = CalibrationErrorKind::RimOutOfRange { rim: expected, low, high };
-        return Err(kind.at(mirror_distance));
+        return Err(mirror_distance.position().error(kind));
     }
     Ok((image, OpticsModel::SphericalMirror(mirror)))
 }
@@ -152,14 +149,15 @@ fn single_viewpoint(
     let given = table.get("image").map(read_image).transpose()?;
     let file = table.need("file")?;
     let (name, bytes) = open(file, files)?;
-    let (found, optics) = read(name, &bytes, height)
-        .map_err(|error| CalibrationErrorKind::Optics { file: shown(name), error }.at(file))?;
+    let (found, optics) = read(name, &bytes, height).map_err(|error| {
+        file.position().error(CalibrationErrorKind::Optics { file: shown(name), error })
+    })?;
     match (given, found, table.get("image")) {
         (Some(given), Some(found), Some(value)) if given != found => {
-            Err(CalibrationErrorKind::OtherImage { given, found }.at(value))
+            Err(value.position().error(CalibrationErrorKind::OtherImage { given, found }))
         }
         (Some(image), ..) | (None, Some(image), _) => Ok((image, optics)),
-        (None, None, _) => Err(CalibrationErrorKind::NoImage.at(file)),
+        (None, None, _) => Err(file.position().error(CalibrationErrorKind::NoImage)),
     }
 }
 
@@ -169,8 +167,9 @@ fn read_mask(
     image: [u32; 2],
 ) -> Result<Mask, CalibrationError> {
     let (name, bytes) = open(value, files)?;
-    Mask::from_png(name, &bytes, image)
-        .map_err(|error| CalibrationErrorKind::Mask { file: shown(name), error }.at(value))
+    Mask::from_png(name, &bytes, image).map_err(|error| {
+        value.position().error(CalibrationErrorKind::Mask { file: shown(name), error })
+    })
 }
 
 fn open<'d>(
@@ -178,8 +177,9 @@ fn open<'d>(
     files: &mut Files<'_>,
 ) -> Result<(&'d str, Vec<u8>), CalibrationError> {
     let name = value.text()?;
-    let bytes = files(name)
-        .map_err(|error| CalibrationErrorKind::Unreadable { file: shown(name), error }.at(value))?;
+    let bytes = files(name).map_err(|error| {
+        value.position().error(CalibrationErrorKind::Unreadable { file: shown(name), error })
+    })?;
     Ok((name, bytes))
 }
 
