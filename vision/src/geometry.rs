@@ -28,6 +28,12 @@ pub fn distance(one: impl Into<Point2<f64>>, other: impl Into<Point2<f64>>) -> f
     (other.into() - one.into()).norm()
 }
 
+/// A length in whole steps of 2^-10 m: sums of such lengths are exact, so the length between two places of a way does not
+/// depend on where the way begins.
+pub fn in_steps(length: f64) -> f64 {
+    (length * 1024.0).round() / 1024.0
+}
+
 /// The motion from the robot's frame to the one in which its pose is given.
 pub fn from_robot(pose: &Odometry) -> Isometry2<f64> {
     Isometry2::new(Vector2::from(pose.position), pose.heading)

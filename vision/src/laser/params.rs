@@ -229,6 +229,8 @@ params! {
         memory: f64 = 30.0,
         /// A robot this near to where it was before goes back. Geometry: less than half of a corridor.
         retraced: f64 = 0.6,
+        /// A robot that left a place this far from where it came in has not gone back. Geometry: more than a corridor.
+        apart: f64 = 2.5,
         /// A robot has turned back once it has gone back for half of this length. Geometry: less is manoeuvring.
         turned_back: f64 = 4.0,
         /// A robot that has not driven farther than this since the log began was always there. Geometry.

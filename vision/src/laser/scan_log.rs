@@ -23,7 +23,7 @@ use super::{
     viewpoint::Viewpoint,
 };
 use crate::{
-    geometry::{from_robot, motion_between, moved},
+    geometry::{from_robot, in_steps, motion_between, moved},
     place::{PlaceView, SeenPlace},
 };
 
@@ -86,10 +86,18 @@ impl ScanLog {
         let mut matcher = ScanMatcher::new(params.matching);
         let mut log = Self { params, drift, scans: Vec::new(), squares: BTreeMap::new() };
         let mut way = 0.0;
-        for number in used(&all, &params.map) {
+        let used = used(&all, &params.map);
+        // Where scans are matched must not depend on the frame of odometry: the axes are along the walls of the first scan.
+        let first = used.first().filter(|_| params.matching.rounds > 0).map(|&first| &all[first]);
+        let frame = first.map_or_else(Isometry2::identity, |(scan, odometry)| {
+            let heading = odometry.heading + scan.direction_of_walls();
+            from_robot(&Odometry { heading, ..*odometry }).inverse()
+        });
+        for number in used {
             let (scan, odometry) = &all[number];
-            way += log.scans.last().map_or(0.0, |last| last.odometry.distance(odometry));
-            let pose = matcher.add_scan(scan, odometry, way, way - params.map.memory);
+            way += log.scans.last().map_or(0.0, |last| in_steps(last.odometry.distance(odometry)));
+            let placed = moved(&frame, odometry);
+            let pose = matcher.add_scan(scan, &placed, way, way - params.map.memory);
             log.squares.entry(square(&pose)).or_default().push(log.scans.len());
             log.scans.push(LoggedScan {
                 number,

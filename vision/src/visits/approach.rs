@@ -199,7 +199,7 @@ impl<S: Copy + Default> Approach<S> {
             at,
             centre: self.turning_point,
             extent: APPROACH_RANGE,
-            least_degree: 1,
+            least_bend: Some(0.0),
             doubt: Some(UndecidedCause::Unclear),
             ..Visit::default()
         }

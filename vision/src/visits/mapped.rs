@@ -14,7 +14,7 @@ use super::{
     way::{Bends, PassedBend, UnseenWay, distance_to_piece},
 };
 use crate::{
-    geometry::{direction, distance},
+    geometry::{direction, distance, in_steps},
     laser::params::LaserParams,
     place::{Certainty, PlaceArm, PlaceView, SeenPlace, nearest_direction},
 };
@@ -40,6 +40,8 @@ pub(super) struct MappedRule<S> {
     passed: VecDeque<(f64, Point2<f64>, S)>,
     /// Stays that are over and not decided yet.
     waiting: VecDeque<Stay<S>>,
+    /// The last points of the way, each with the length of the way to there.
+    trail: VecDeque<(f64, Point2<f64>)>,
     /// The way since the last stay, or since the robot turned back after it.
     since: Vec<Point2<f64>>,
     /// Whether the robot has turned back since the last stay.
@@ -73,6 +75,9 @@ struct Stay<S> {
     entry: Option<f64>,
     /// The direction to where it left, the length of its way then, and its last view.
     exit: Option<(f64, f64)>,
+    /// How far apart the places are where it came in and left.
+    apart: f64,
+    came: Option<Point2<f64>>,
     left: S,
     /// Whether the robot turned back on its way there.
     turned_back: bool,
@@ -103,6 +108,7 @@ struct PastVisit {
     exit: f64,
     /// The length of the robot's way when it left.
     left: f64,
+    is_certain: bool,
 }
 
 /// What the views of a place show. Without arms and doubt it is no vertex.
@@ -145,7 +151,7 @@ impl<S: Copy + Default> MappedRule<S> {
     ) {
         let robot = Point2::from(view.robot.position);
         self.behind.get_or_insert(wrapped(view.robot.heading + PI));
-        let driven = self.since.last().map_or(0.0, |&last| distance(last, robot));
+        let driven = self.since.last().map_or(0.0, |&last| in_steps(distance(last, robot)));
         let way = self.now.way + driven;
         self.now = Now { at, robot, way, odometry_from_map: view.odometry_from_map };
         let (dead_ends, junctions): (Vec<_>, Vec<_>) =
@@ -157,6 +163,11 @@ impl<S: Copy + Default> MappedRule<S> {
         self.leave();
         self.turn();
         self.since.push(robot);
+        self.trail.push_back((way, robot));
+        let memory = self.params.visit.memory;
+        while self.trail.front().is_some_and(|(before, _)| way - before > memory) {
+            self.trail.pop_front();
+        }
         if self.params.corner.corners {
             for bend in self.bends.add(robot, way, at) {
                 self.pass_bend(&bend, sight);
@@ -199,6 +210,8 @@ impl<S: Copy + Default> MappedRule<S> {
             clearance,
             entry: None,
             exit: None,
+            apart: 0.0,
+            came: None,
             left: at,
             turned_back: self.turned_back,
             odometry_from_map,
@@ -218,6 +231,7 @@ impl<S: Copy + Default> MappedRule<S> {
             let is_over = distance(stay.centre, now.robot) > radius;
             stay.odometry_from_map = now.odometry_from_map;
             stay.exit = is_over.then(|| (direction(stay.centre, now.robot), now.way));
+            stay.apart = stay.came.map_or(0.0, |came| distance(came, now.robot));
             stay.left = now.at;
             is_over
         };
@@ -298,7 +312,7 @@ impl<S: Copy + Default> MappedRule<S> {
     fn enter(&mut self) {
         let Now { at, robot, way, .. } = self.now;
         if self.stay.is_none() {
-            self.stay = self.stay_at(StayKind::Junction, robot);
+            self.stay = self.stay_at(StayKind::Junction, robot, way);
         }
         self.passed.push_back((way, robot, at));
         let memory = 2.0 * self.params.visit.settle;
@@ -306,27 +320,28 @@ impl<S: Copy + Default> MappedRule<S> {
             self.passed.pop_front();
         }
         if self.possible_stay.is_none() {
-            self.possible_stay = self.passed.iter().find_map(|&(_, point, at)| {
-                Some(Stay { at, ..self.stay_at(StayKind::PossibleJunction, point)? })
+            self.possible_stay = self.passed.iter().find_map(|&(way, point, at)| {
+                Some(Stay { at, ..self.stay_at(StayKind::PossibleJunction, point, way)? })
             });
         }
     }
 
-    /// The stay of a robot that is within a place.
-    fn stay_at(&self, kind: StayKind, robot: Point2<f64>) -> Option<Stay<S>> {
+    /// The stay of a robot that is within a place, after this length of its way.
+    fn stay_at(&self, kind: StayKind, robot: Point2<f64>, way: f64) -> Option<Stay<S>> {
         let visit = &self.params.visit;
         let places = match kind {
             StayKind::PossibleJunction => &self.possible_junctions,
             _ => &self.junctions,
         };
         let here = places.nearest(robot, |place| visit.radius(place.clearance))?;
-        let outside =
-            |point: &&Point2<f64>| distance(here.centre, **point) > visit.radius(here.clearance);
+        let is_outside = |&&(before, point): &&(f64, Point2<f64>)| {
+            before <= way && distance(here.centre, point) > visit.radius(here.clearance)
+        };
         // Where a log begins shows nothing of where the robot came from.
-        let before = self.since.iter().rev().find(outside);
-        let before = before.filter(|_| self.now.way > visit.beginning);
-        let entry = before.map(|&point| direction(here.centre, point));
-        Some(Stay { entry, ..self.begin(kind, here.centre, here.clearance) })
+        let before = self.trail.iter().rev().find(is_outside);
+        let came = before.filter(|_| way > visit.beginning).map(|&(_, point)| point);
+        let entry = came.map(|point| direction(here.centre, point));
+        Some(Stay { entry, came, ..self.begin(kind, here.centre, here.clearance) })
     }
 
     /// What the views show of a place; `None` if nothing. If there are more doors with the arms in doubt than without them,
@@ -380,7 +395,9 @@ impl<S: Copy + Default> MappedRule<S> {
                 // A junction where the robot turned is no corner.
                 let arm = self.params.corner.arm;
                 let is_junction = self.last.is_some_and(|(last, _)| {
-                    distance(last.centre, stay.centre) < arm && way <= last.left + arm
+                    last.is_certain
+                        && distance(last.centre, stay.centre) < arm
+                        && way <= last.left + arm
                 });
                 let certain = stay.entry.into_iter().chain(stay.exit.map(|(exit, _)| exit));
                 let possible = possible.into_iter().flatten();
@@ -461,7 +478,9 @@ impl<S: Copy + Default> MappedRule<S> {
             }
         }
         if let Some((exit, left)) = stay.exit {
-            let last = PastVisit { centre: stay.centre, extent: estimate.extent, exit, left };
+            let is_certain = estimate.doubt.is_none();
+            let (centre, extent) = (stay.centre, estimate.extent);
+            let last = PastVisit { centre, extent, exit, left, is_certain };
             self.last = Some((last, false));
         }
         if stay.kind == StayKind::PossibleJunction {
@@ -522,7 +541,9 @@ impl<S: Copy + Default> MappedRule<S> {
         }
         let goes_back = exit.is_some_and(|exit| {
             let back = nearest_direction(&counted, entry);
-            self.is_same(entry, exit) && nearest_direction(&counted, exit) == back
+            self.is_same(entry, exit)
+                && nearest_direction(&counted, exit) == back
+                && stay.apart < self.params.visit.apart
         });
         let turn = stay.odometry_from_map.rotation.angle();
         for arm in &mut arms {
@@ -540,7 +561,7 @@ impl<S: Copy + Default> MappedRule<S> {
             extent: self.params.visit.radius(stay.clearance),
             arms,
             came: Some(wrapped(entry + turn)),
-            least_degree: if self.params.corner.corners { 1 } else { 3 },
+            least_bend: self.params.corner.corners.then_some(self.params.corner.min_turn),
             exit,
             goes_back,
             doubt,

@@ -32,8 +32,9 @@ pub struct Visit<S> {
     pub arms: Vec<PlaceArm>,
     /// The direction to where the robot came in; `None` if that is the first arm.
     pub came: Option<f64>,
-    /// A place with fewer arms is no vertex.
-    pub least_degree: usize,
+    /// A dead end, and a place with two arms where a way bends by at least this angle, in radians, is a vertex; `None`:
+    /// only a place with three arms is.
+    pub least_bend: Option<f64>,
     /// How the robot left; `None` if the log ends there.
     pub exit: Option<VisitExit<S>>,
     /// Whether it left the way that it came.
@@ -129,7 +130,7 @@ impl<S> Visit<S> {
             };
             let arms: Vec<f64> =
                 self.arms.iter().filter(is_there).map(|arm| arm.direction).collect();
-            (arms.len() >= self.least_degree).then(|| self.percept_with(&arms))
+            self.is_vertex(&arms).then(|| self.percept_with(&arms))
         };
         let fits = |seen: &Option<VisitPercept>| {
             let door = seen.and_then(|seen| seen.door);
@@ -139,6 +140,15 @@ impl<S> Visit<S> {
         all.sort_unstable();
         all.dedup();
         all
+    }
+
+    fn is_vertex(&self, arms: &[f64]) -> bool {
+        match (arms, self.least_bend) {
+            ([_, _, _, ..], _) => true,
+            (&[one, other], Some(least)) => PI - wrapped(one - other).abs() >= least,
+            ([_], Some(_)) => true,
+            _ => false,
+        }
     }
 
     /// The percept of the arms that are certain, and the door that was taken.
@@ -177,7 +187,7 @@ mod tests {
     use super::*;
 
     /// A visit by a robot that came from the west and left to the east, with a possible arm in the north.
-    fn visit(least_degree: usize) -> Visit<()> {
+    fn visit(least_bend: Option<f64>) -> Visit<()> {
         let arm = |direction, certainty| PlaceArm { direction, certainty };
         let (north, south) = (FRAC_PI_2, -FRAC_PI_2);
         Visit {
@@ -187,7 +197,7 @@ mod tests {
                 arm(0.0, Certainty::Certain),
                 arm(south, Certainty::Excluded),
             ],
-            least_degree,
+            least_bend,
             exit: Some(VisitExit { at: (), direction: 0.1, off: None }),
             doubt: Some(UndecidedCause::UnseenArm),
             ..Visit::default()
@@ -197,9 +207,16 @@ mod tests {
     #[test]
     fn an_arm_that_is_possible_makes_alternatives_and_one_that_is_excluded_none() {
         let percept = |degree, door| Some(VisitPercept { degree, door: Some(door) });
-        assert_eq!(visit(3).alternatives(), [None, percept(3, 2)]);
-        assert_eq!(visit(1).alternatives(), [percept(2, 1), percept(3, 2)]);
-        let mut unknown = visit(3);
+        assert_eq!(visit(None).alternatives(), [None, percept(3, 2)]);
+        assert_eq!(
+            visit(Some(1.0)).alternatives(),
+            [None, percept(3, 2)],
+            "the way goes straight on"
+        );
+        let mut corner = visit(Some(1.0));
+        corner.arms[2].direction = -1.0;
+        assert_eq!(corner.alternatives(), [percept(2, 1), percept(3, 2)]);
+        let mut unknown = visit(None);
         unknown.arms.clear();
         assert_eq!(unknown.alternatives(), []);
         // No alternative is left out: with too many possible arms there is none at all.
@@ -216,7 +233,7 @@ mod tests {
             let mut log = VisitLog::default();
             for doubt in doubts {
                 let doubt = doubt.then_some(UndecidedCause::Unclear);
-                log.push(Visit { doubt, ..visit(3) }, |_| Some(7.0));
+                log.push(Visit { doubt, ..visit(None) }, |_| Some(7.0));
                 log.turned_back.extend(turned_back.then_some(()));
             }
             log.visits[1].hallway.map(|hallway| (hallway.length, hallway.turn))
