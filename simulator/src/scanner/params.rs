@@ -4,7 +4,7 @@ use toposlam_vision::params;
 
 params! {
     /// The parameters of a simulated laser scanner and of the building that it scans. A TOML file sets some of them
-    /// ([`params::read`]); the others have their defaults.
+    /// ([`params::read`]); the others have their defaults. Scanners that are sold have a name ([`ScannerParams::named`]).
     ScannerParams {
         /// The angle that a scan covers, symmetric about ahead, in degrees. 360 is that of a TurtleBot's
         /// scanner, 180 that of a SICK LMS.
@@ -17,6 +17,8 @@ params! {
         range: f64 = 30.0 => 3.0..=100.0,
         /// Noise of a range, in metres; standard deviation. Of a SICK LMS it is 0.01.
         noise: f64 = 0.01 => 0.0..=0.2,
+        /// More noise of a range, as a part of it; standard deviation.
+        range_noise: f64 = 0.0 => 0.0..=0.1,
         /// The part of the readings that are invalid.
         dropouts: f64 = 0.005 => 0.0..=0.5,
         /// Stretches of glass in 10 m of a corridor's wall, each 1 to 3 m long. Glass reflects only a ray that
@@ -37,6 +39,7 @@ impl ScannerParams {
     /// A scanner without noise in an empty building.
     pub const PLAIN: Self = Self {
         noise: 0.0,
+        range_noise: 0.0,
         dropouts: 0.0,
         glass: 0.0,
         black: 0.0,

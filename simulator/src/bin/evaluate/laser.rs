@@ -1,6 +1,6 @@
 //! `evaluate laser`: compares junctions that are sensed with a laser scanner with the truth.
 
-use std::{io::Write, path::PathBuf};
+use std::io::Write;
 
 use clap::ValueEnum;
 use serde_json::{Map, json};
@@ -28,7 +28,7 @@ use toposlam_simulator::{
         },
         traversals::{JudgedTraversal, TraversalSampler},
     },
-    options::robot_sensor::read_scanner,
+    options::robot_sensor::{ScannerOption, read_scanner},
     sample_verdict::SampleVerdict,
 };
 
@@ -49,6 +49,8 @@ use toposlam_simulator::{
 /// the map and the pose are, and wrong if the robot does not notice that they are not; otherwise it gave up. With
 /// --recover it goes on after a contradiction.
 ///
+/// Without --scanner, the usual scanner covers 360 and 180 degrees in turn.
+///
 /// Control is measured in floor plans with right angles: the robot drives by its scans from junction to
 /// junction, in the traversals of `evaluate control --sensor laser` with the same seed. `evaluate runs --sensor
 /// laser` measures whole runs of that robot.
@@ -61,7 +63,7 @@ Examples:
   evaluate laser --drift 5                odometry that drifts
   evaluate laser --buildings long         other buildings
   evaluate laser --walks 0 --runs 20 --recover
-  evaluate laser --scanner scanner.toml   another scanner
+  evaluate laser --scanner lds-01         another scanner
   evaluate laser --walk 17                each visit of one walk
 
 A target is met if the 95 % interval of the rate is within it, missed if the \
@@ -97,10 +99,8 @@ pub(super) struct EvaluateLaserArguments {
     /// The most that the heading of the odometry drifts, in degrees in 10 m
     #[arg(long, default_value_t = 1.0, value_name = "DEGREES", value_parser = drift)]
     drift: f64,
-    /// Parameters of the scanner and of what makes its scans harder to read, .toml [default: the usual
-    /// ones, with a field of view of 360 and of 180 degrees in turn]
-    #[arg(long, value_name = "FILE")]
-    scanner: Option<PathBuf>,
+    #[command(flatten)]
+    scanner: ScannerOption,
     /// Measure only the walk with this number, and print each of its visits
     #[arg(long, value_name = "N", conflicts_with_all = ["walks", "runs", "traversals"])]
     walk: Option<u64>,
@@ -111,7 +111,7 @@ pub(super) struct EvaluateLaserArguments {
 impl EvaluateLaserArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut sheet = self.report.begin()?;
-        let scanner = self.scanner.as_deref().map(read_scanner).transpose()?;
+        let scanner = self.scanner.given.as_deref().map(read_scanner).transpose()?;
         let sampler = WalkSampler {
             seed: self.seed,
             buildings: self.buildings,
