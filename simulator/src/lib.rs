@@ -48,6 +48,6 @@ pub use motion::{MotionNoise, SimulatedBase};
 pub use plans::{NamedPlan, plan_named, plans};
 pub use scanner::{
     ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, NamedScanner, SCANNERS,
-    ScannerParams, Segment,
+    ScannerParams, Segment, ShortRangeError,
 };
 pub use simulated_robot::{RobotEquipment, SimulatedRobot};

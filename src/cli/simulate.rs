@@ -181,6 +181,10 @@ impl SimulateArguments {
         let plan = Arc::new(input::floor_plan(&self.plan, &world)?.clone());
         let facing = self.start_in(&world, &plan)?;
         feasible::check(&self.plan, &world, &plan, facing)?;
+        if let Some(scanner) = &scanner {
+            let is_enough = scanner.check_range(plan.hallway_width());
+            is_enough.map_err(|error| CliError::at("--scanner", error))?;
+        }
         let settings = self.options.settings(Some(&world_hash(&world.graph, facing)))?;
         let config = SimulationConfig {
             noise: self.noise,

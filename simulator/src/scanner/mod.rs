@@ -22,7 +22,7 @@ use crate::render::{StreamPurpose, stream};
 
 pub use corridors::{Corridor, CorridorPlan, Lobby};
 pub use data_sheets::{NamedScanner, SCANNERS};
-pub use params::ScannerParams;
+pub use params::{ScannerParams, ShortRangeError};
 pub use polygon::{ConvexPolygon, Segment};
 use scanned_building::{ScannedBuilding, ScannedWall, WallSurface};
 
@@ -268,6 +268,14 @@ mod tests {
         }
         assert_eq!(ScannerParams::named("UTM-30LX"), ScannerParams::named("utm-30lx"));
         assert_eq!(ScannerParams::named("vlp-16"), None);
+    }
+
+    #[test]
+    fn a_range_of_3_5_m_is_enough_for_corridors_of_3_m() {
+        let scanner = ScannerParams::named("lds-01").unwrap();
+        assert_eq!(scanner.check_range(3.0), Ok(()));
+        let error = scanner.check_range(3.2).unwrap_err().to_string();
+        assert!(error.contains("3.5 m") && error.contains("needs 3.6 m"), "{error}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The parameters of a simulated laser scanner, and of what makes its scans harder to read.
 
+use thiserror::Error;
 use toposlam_vision::params;
 
 params! {
@@ -14,7 +15,7 @@ params! {
         /// Nearer surfaces give no reading, in metres.
         least_range: f64 = 0.1 => 0.0..=0.3,
         /// Farther surfaces give no return, in metres.
-        range: f64 = 30.0 => 3.0..=100.0,
+        range: f64 = 30.0 => 1.0..=100.0,
         /// Noise of a range, in metres; standard deviation. Of a SICK LMS it is 0.01.
         noise: f64 = 0.01 => 0.0..=0.2,
         /// More noise of a range, as a part of it; standard deviation.
@@ -35,7 +36,24 @@ params! {
     }
 }
 
+/// A scanner does not see far enough for a building. Lengths are in metres.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error(
+    "the scanner's range is {range} m; in corridors up to {width} m wide a robot needs {needed:.1} m"
+)]
+pub struct ShortRangeError {
+    pub range: f64,
+    pub width: f64,
+    pub needed: f64,
+}
+
 impl ScannerParams {
+    /// Checks that a robot in the middle of a corridor sees from one edge of an opening beside it to the other.
+    pub fn check_range(&self, width: f64) -> Result<(), ShortRangeError> {
+        let (range, needed) = (self.range, width.hypot(width / 2.0));
+        if range < needed { Err(ShortRangeError { range, width, needed }) } else { Ok(()) }
+    }
+
     /// A scanner without noise in an empty building.
     pub const PLAIN: Self = Self {
         noise: 0.0,

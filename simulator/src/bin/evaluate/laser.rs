@@ -26,7 +26,7 @@ use toposlam_simulator::{
     RobotEquipment, ScannerParams,
     evaluation::{
         laser::{
-            corridor_world::BuildingKind,
+            corridor_world::{BuildingKind, CorridorWorld},
             judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict, WalkSampler},
             laser_report,
             scanned_run::ScannedRun,
@@ -121,6 +121,10 @@ impl EvaluateLaserArguments {
         let mut sheet = self.report.begin()?;
         let failed = self.failed.begin()?;
         let scanner = self.scanner.given.as_deref().map(read_scanner).transpose()?;
+        if let Some(scanner) = &scanner {
+            let is_enough = scanner.check_range(CorridorWorld::WIDEST);
+            is_enough.map_err(|error| CliError::at("--scanner", error))?;
+        }
         let sampler = WalkSampler {
             seed: self.seed,
             buildings: self.buildings,

@@ -67,11 +67,17 @@ impl RobotArguments {
         random: RandomPlans,
         most: usize,
     ) -> Result<Vec<NamedPlan>, CliError> {
-        if self.plan.is_empty() {
-            usual_plans(self.seed, random, most)
+        let plans = if self.plan.is_empty() {
+            usual_plans(self.seed, random, most)?
         } else {
-            read_plans(&self.plan)
+            read_plans(&self.plan)?
+        };
+        if let Some(scanner) = self.sensor.scanner(self.scanner.given.as_deref())? {
+            let widths = plans.iter().map(|(_, plan)| plan.hallway_width());
+            let is_enough = scanner.check_range(widths.fold(0.0, f64::max));
+            is_enough.map_err(|error| CliError::at("--scanner", error))?;
         }
+        Ok(plans)
     }
 
     /// The sensors of the robots.
