@@ -62,7 +62,7 @@ fn runs_that_gave_up_are_written_with_the_reason_and_the_command_that_repeats_ea
     let lines = objects(&stdout_of(words.map(OsStr::new).chain([written.as_os_str()])));
     let gave_up: Vec<_> = lines.iter().filter(|line| line["gave_up"] == true).collect();
     let failed = objects(&fs::read_to_string(written.join("failed.jsonl")).unwrap());
-    assert!(gave_up.len() > 5 && failed.len() == gave_up.len(), "{} failed", failed.len());
+    assert!(gave_up.len() >= 5 && failed.len() == gave_up.len(), "{} failed", failed.len());
     for (line, run) in failed.iter().zip(gave_up) {
         assert_eq!((&line["run"], &line["seed"]), (&run["run"], &7.into()));
         assert_eq!(line["verdict"], "gave up");
