@@ -88,7 +88,7 @@ pub(super) struct LaserRobot<'w> {
     sees_arms: bool,
     /// Where it stands if it drives into an arm from there only to see how far it leads.
     drives_from: Option<Point2<f64>>,
-    /// The steps in which it drove into arms and came back.
+    /// The steps in which it drove into arms, or past an opening, and came back.
     side_trips: Vec<Range<usize>>,
     /// From the local map to the frame of odometry, in the last view.
     odometry_from_map: Isometry2<f64>,
@@ -264,12 +264,18 @@ impl<'w> LaserRobot<'w> {
             }
         }
         let Some((_, mut place)) = closest else { return Ok(LegResult::Driven) };
+        let noticed = self.sensed;
         if !self.sees_arms {
             self.see_all_of(&mut place)?;
+            self.side_trips.push(noticed..self.sensed);
         }
         self.driver.stop_after(self.sensed);
         let entry = self.came_from(&place);
         self.go_to(&place)?;
+        if !self.sees_arms {
+            // There and back.
+            self.side_trips.push(noticed..self.sensed);
+        }
         Ok(LegResult::AtPlace(place, entry))
     }
 
