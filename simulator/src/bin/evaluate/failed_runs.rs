@@ -28,7 +28,7 @@ pub(super) struct FailedRuns<'f> {
 }
 
 /// A run that failed.
-pub(super) struct FailedRun {
+pub(super) struct FailedSimulation {
     pub(super) seed: u64,
     pub(super) number: u64,
     pub(super) verdict: &'static str,
@@ -59,7 +59,7 @@ impl FailedRuns<'_> {
     /// Writes a run. Its log is made with a head.
     pub(super) fn add(
         &mut self,
-        run: &FailedRun,
+        run: &FailedSimulation,
         log: impl FnOnce(messages::Run) -> Result<Vec<u8>, CliError>,
     ) -> Result<(), CliError> {
         let name = format!("run-{:04}", run.number);

@@ -18,7 +18,7 @@ use toposlam_vision::laser::params::LaserParams;
 
 use super::{
     control,
-    failed_runs::{FailedOption, FailedRun},
+    failed_runs::{FailedOption, FailedSimulation},
     report::{EvaluationReport, MeasurementEnd, ReportArguments, measure},
     robots::{PLANS, RandomPlans, usual_plans},
 };
@@ -227,7 +227,7 @@ impl EvaluateLaserArguments {
     }
 
     /// A run that failed, as it is written.
-    fn failed_run(&self, run: &ScannedRun, sampler: &WalkSampler) -> Option<FailedRun> {
+    fn failed_run(&self, run: &ScannedRun, sampler: &WalkSampler) -> Option<FailedSimulation> {
         let ScannedRun { number, outcome, .. } = run;
         let method = self.safeguards.folding();
         let (graph, start) = sampler.run_world(*number)?;
@@ -245,7 +245,7 @@ impl EvaluateLaserArguments {
         words
             .extend(scanner.map(|given| format!("--scanner {}", quoted(&given.to_string_lossy()))));
         let command = words.join(" ");
-        Some(FailedRun {
+        Some(FailedSimulation {
             seed: self.seed,
             number: *number,
             verdict: in_words_of(outcome),

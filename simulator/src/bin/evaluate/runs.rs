@@ -14,7 +14,7 @@ use toposlam_terminal::{
 };
 
 use super::{
-    failed_runs::{FailedOption, FailedRun, plan_world},
+    failed_runs::{FailedOption, FailedSimulation, plan_world},
     report::{MeasurementEnd, measure, number},
     robots::{RandomPlans, RobotArguments},
 };
@@ -180,7 +180,7 @@ impl EvaluateRunsArguments {
         run: &JudgedRun,
         runs: &RunSampler,
         equipment: &RobotEquipment,
-    ) -> FailedRun {
+    ) -> FailedSimulation {
         let JudgedRun { case, ending, .. } = run;
         let RobotCase { number, plan_name, config } = case;
         let seed = self.robots.seed;
@@ -199,7 +199,7 @@ impl EvaluateRunsArguments {
         }
         options.extend(config.faults.iter().map(|fault| format!("--fault {fault}")));
         options.extend(self.robots.sensing_options(look.map(|(_, look)| look)));
-        FailedRun {
+        FailedSimulation {
             seed,
             number: *number,
             verdict: if ending.gave_up() { "gave up" } else { "wrong" },
