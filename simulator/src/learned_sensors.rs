@@ -108,6 +108,10 @@ impl LearnedSensors {
         Self { camera: camera.clone(), rig, looks: vec![(look, colours)] }
     }
 
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
     pub fn rig(&self) -> &Arc<Rig> {
         &self.rig
     }

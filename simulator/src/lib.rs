@@ -47,6 +47,7 @@ pub use learned_sensors::{LearnedSensors, LearningError, learned};
 pub use motion::{MotionNoise, SimulatedBase};
 pub use plans::{NamedPlan, plan_named, plans};
 pub use scanner::{
-    ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, ScannerParams, Segment,
+    ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, NamedScanner, SCANNERS,
+    ScannerParams, Segment, ShortRangeError,
 };
 pub use simulated_robot::{RobotEquipment, SimulatedRobot};

@@ -93,6 +93,14 @@ pub enum RobotEquipment {
 }
 
 impl RobotEquipment {
+    /// The sensors of robots with a camera that takes images.
+    pub fn sensors(&self) -> Option<&LearnedSensors> {
+        match self {
+            Self::Images(sensors) => Some(sensors),
+            Self::Scenes | Self::Laser(_) => None,
+        }
+    }
+
     pub(super) fn robot(
         &self,
         config: &SimulationConfig,

@@ -9,4 +9,5 @@ mod renderer;
 mod replay;
 mod rim;
 mod scanner;
+mod self_judged;
 mod sensing;

@@ -24,7 +24,7 @@ use super::{
     exit_codes::help_end,
     input, noise, output,
     progress::{Progress, StopSignal},
-    robot_sensor::{SensorChoice, needs_camera},
+    robot_sensor::{ScannerOption, SensorChoice, needs_camera},
     run_capture::RunCapture,
     run_options::{GivenOptions, RunOptions},
     run_report::{RobotReport, RobotRun, RunReport},
@@ -79,9 +79,8 @@ pub(super) struct SimulateArguments {
         hide_possible_values = true
     )]
     sensor: SensorChoice,
-    /// Parameters of the laser scanner and of what makes its scans harder to read, .toml
-    #[arg(long, value_name = "FILE")]
-    scanner: Option<PathBuf>,
+    #[command(flatten)]
+    scanner: ScannerOption,
     /// Render no images: simulate scenes with the measured accuracy of sensing
     #[arg(long, conflicts_with_all = OF_IMAGES)]
     by_scene: bool,
@@ -166,7 +165,7 @@ impl SimulateArguments {
 
     /// Checks the options, reads the inputs and learns the colours.
     fn prepare(&self) -> Result<Simulation, CliError> {
-        let scanner = self.sensor.scanner(self.scanner.as_deref())?;
+        let scanner = self.sensor.scanner(self.scanner.given.as_deref())?;
         if self.sensor == SensorChoice::Laser {
             let mut of_images = ["by-scene"].into_iter().chain(OF_IMAGES);
             if let Some(option) = of_images.find(|option| self.given.has(option)) {
@@ -181,6 +180,10 @@ impl SimulateArguments {
         let plan = Arc::new(input::floor_plan(&self.plan, &world)?.clone());
         let facing = self.start_in(&world, &plan)?;
         feasible::check(&self.plan, &world, &plan, facing)?;
+        if let Some(scanner) = &scanner {
+            let is_enough = scanner.check_range(plan.hallway_width());
+            is_enough.map_err(|error| CliError::at("--scanner", error))?;
+        }
         let settings = self.options.settings(Some(&world_hash(&world.graph, facing)))?;
         let config = SimulationConfig {
             noise: self.noise,
@@ -425,6 +428,7 @@ Examples:
   toposlam simulate worlds/shape-6.toml --seed 3 --json
   toposlam simulate worlds/building-12.toml --by-scene --algorithm algorithm1
   toposlam simulate worlds/shape-6.toml --sensor laser --log shape-6.mcap
+  toposlam simulate worlds/shape-6.toml --sensor laser --scanner rplidar-a1
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-8.toml --by-scene --recover --fault carried@80
   toposlam simulate worlds/shape-8.toml --by-scene --recover --budget 15moves \\

@@ -50,6 +50,13 @@ impl SafeguardOptions {
         }
     }
 
+    /// The options that give the same safeguards.
+    pub fn arguments(&self) -> Vec<String> {
+        let audits = self.audit.audits().map(|audits| format!("--audit={audits}"));
+        let recover = self.recover.then(|| "--recover".to_owned());
+        audits.into_iter().chain(recover).collect()
+    }
+
     /// The method of an algorithm that does not recover.
     fn by(&self, algorithm: MappingAlgorithm) -> MappingMethod {
         MappingMethod::By { algorithm, audits: self.audit.audits().unwrap_or(0) }
@@ -73,6 +80,12 @@ pub struct MethodOptions {
 }
 
 impl MethodOptions {
+    /// The options that give the same method.
+    pub fn arguments(&self) -> Vec<String> {
+        let algorithm = format!("--algorithm {}", self.algorithm.name());
+        [algorithm].into_iter().chain(self.safeguards.arguments()).collect()
+    }
+
     /// The method, unless Algorithm 1 is to recover.
     pub fn method(&self) -> Result<MappingMethod, CliError> {
         match (self.safeguards.recover, self.algorithm) {

@@ -69,7 +69,8 @@ fn every_option_that_writes_or_reads_a_file_is_in_the_list() {
         let help = scratch.out(&format!("{verb} --help"), 0);
         let names = help.lines().filter_map(|line| {
             let (option, value) = line.trim_start().split_once(" <")?;
-            let is_file = ["FILE>", "DIR>"].contains(&value.trim().trim_end_matches("..."));
+            let is_file =
+                ["FILE>", "NAME|FILE>", "DIR>"].contains(&value.trim().trim_end_matches("..."));
             (is_file && option.starts_with('-')).then(|| option.rsplit(' ').next().unwrap())
         });
         let known: BTreeSet<_> = writing.chain(others).collect();

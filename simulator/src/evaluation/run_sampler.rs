@@ -2,7 +2,12 @@
 
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_logs::record::{RunObserver, StoppedBy};
+use toposlam_logs::{
+    messages,
+    record::{RunObserver, StoppedBy},
+    recorder::Recorder,
+    writer::LogWriteError,
+};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
@@ -10,7 +15,10 @@ use toposlam_model::{
     folding::certificate_length,
     mapping::{DEFAULT_DART_BOUND, MappedWorld, MappingError, MappingMethod},
 };
-use toposlam_robot::{explorer::ExplorerError, run_settings::RunSettings};
+use toposlam_robot::{
+    explorer::ExplorerError,
+    run_settings::{RecordedSettings, RunSettings},
+};
 
 use crate::{
     FAULTS, FaultKind, NamedPlan, RobotEquipment, RobotFault, SimulationConfig,
@@ -51,7 +59,7 @@ impl RobotCase {
     ) -> Run<'_> {
         let SimulationConfig { plan, marker, .. } = &self.config;
         let (robot, sensor) = equipment.robot(&self.config, self.number);
-        run(plan, *marker, robot, sensor, observer, &RunSettings::new(method, dart_bound(plan)))
+        run(plan, *marker, robot, sensor, observer, &run_settings(method, plan))
     }
 }
 
@@ -140,6 +148,26 @@ impl RunSampler {
         Some(RobotCase { number, plan_name, config })
     }
 
+    /// How the robot of a run maps.
+    pub fn settings(&self, case: &RobotCase) -> RecordedSettings {
+        run_settings(self.method, &case.config.plan).recorded()
+    }
+
+    /// Makes a run once more. Returns its log, which begins with this head.
+    pub fn log(
+        &self,
+        case: &RobotCase,
+        equipment: &RobotEquipment,
+        head: &messages::Run,
+    ) -> Result<Vec<u8>, LogWriteError> {
+        let mut case = case.clone();
+        case.config.keeps_track = true;
+        let camera = equipment.sensors().map(|sensors| sensors.camera().clone());
+        let mut recorder = Recorder::new(Vec::new(), head, camera)?;
+        case.run(equipment, self.method, &mut recorder);
+        recorder.finish()
+    }
+
     /// Makes the run with this number. Returns `None` without starts, or if the watch stops.
     pub fn run(
         &self,
@@ -165,6 +193,11 @@ impl RunSampler {
             case,
         })
     }
+}
+
+/// How a robot maps a plan.
+fn run_settings(method: impl Into<MappingMethod>, plan: &FloorPlan) -> RunSettings {
+    RunSettings::new(method, dart_bound(plan))
 }
 
 /// The bound on the darts of a map, which stops a robot that maps places that do not exist.

@@ -1,8 +1,8 @@
 //! Which sensors a simulated robot has, and the parameters of its laser scanner.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::ScannerParams;
+use crate::{SCANNERS, ScannerParams};
 use clap::{
     ValueEnum,
     builder::{PossibleValuesParser, TypedValueParser},
@@ -55,9 +55,54 @@ pub fn needs_camera(option: &str) -> CliError {
     CliError::at(option, "has no effect with --sensor laser: the robot has no camera")
 }
 
-/// Reads the parameters of a simulated laser scanner.
-pub fn read_scanner(path: &Path) -> Result<ScannerParams, CliError> {
-    let bytes = input::read(path)?;
-    let text = std::str::from_utf8(&bytes).map_err(|error| CliError::in_file(path, error))?;
-    toposlam_vision::params::read(text).map_err(|error| CliError::in_file(path, error))
+/// The laser scanner of a simulated robot.
+#[derive(clap::Args)]
+pub struct ScannerOption {
+    /// The laser scanner: lds-01, lds-02, rplidar-a1, rplidar-c1, ust-10lx, utm-30lx, lms-200, lms-291, urg-04lx; or a
+    /// file with its parameters and those of what makes scans harder to read, .toml
+    #[arg(long = "scanner", id = "scanner", value_name = "NAME|FILE")]
+    pub given: Option<PathBuf>,
+}
+
+/// The parameters of a simulated laser scanner: of one with a name, or those in a file.
+pub fn read_scanner(given: &Path) -> Result<ScannerParams, CliError> {
+    let name = given.to_str().filter(|text| *text != "-" && !text.contains(['/', '\\', '.']));
+    if let Some(name) = name {
+        if let Some(params) = ScannerParams::named(name) {
+            return Ok(params);
+        }
+        if !given.exists() {
+            let names = SCANNERS.map(|scanner| scanner.name).join(", ");
+            let error = format!("there is no scanner `{name}`; expected one of {names}, or a file");
+            return Err(CliError::at("--scanner", error));
+        }
+    }
+    let bytes = input::read(given)?;
+    let text = std::str::from_utf8(&bytes).map_err(|error| CliError::in_file(given, error))?;
+    toposlam_vision::params::read(text).map_err(|error| CliError::in_file(given, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[derive(clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        scanner: ScannerOption,
+    }
+
+    #[test]
+    fn the_help_lists_the_scanners_and_an_unknown_name_is_an_error_that_does() {
+        let help = Line::command().render_long_help().to_string();
+        let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        let error = read_scanner(Path::new("lds-03")).unwrap_err().cause_in(Path::new(""));
+        assert!(error.starts_with("--scanner: there is no scanner `lds-03`"), "{error}");
+        let names = SCANNERS.map(|scanner| scanner.name).join(", ");
+        assert!(help.contains(&names) && error.contains(&names), "{help}{error}");
+        assert_eq!(read_scanner(Path::new("lds-01")).unwrap().range, 3.5);
+        assert!(read_scanner(Path::new("./lds-01")).is_err(), "a file that does not exist");
+    }
 }

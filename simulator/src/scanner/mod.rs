@@ -2,6 +2,7 @@
 //! corridors at any angle; its walls, and what makes scans harder to read, are in `scanned_building`.
 
 mod corridors;
+mod data_sheets;
 mod params;
 mod polygon;
 mod scanned_building;
@@ -20,7 +21,8 @@ use toposlam_vision::{
 use crate::render::{StreamPurpose, stream};
 
 pub use corridors::{Corridor, CorridorPlan, Lobby};
-pub use params::ScannerParams;
+pub use data_sheets::{NamedScanner, SCANNERS};
+pub use params::{ScannerParams, ShortRangeError};
 pub use polygon::{ConvexPolygon, Segment};
 use scanned_building::{ScannedBuilding, ScannedWall, WallSurface};
 
@@ -72,7 +74,10 @@ impl LaserScanner {
             let range = met.and_then(|met| met.returned(params));
             match range {
                 _ if spoilt < params.dropouts => f32::NAN,
-                Some(range) => (range + params.noise * noise).max(0.0) as f32,
+                Some(range) => {
+                    let deviation = params.noise.hypot(params.range_noise * range);
+                    (range + deviation * noise).max(0.0) as f32
+                }
                 None => f32::INFINITY,
             }
         });
@@ -218,6 +223,72 @@ mod tests {
         assert_eq!(reading(&scan, 0.0), Reading::NoReturn);
         let behind = reading(&scan, PI.to_degrees());
         assert!(matches!(behind, Reading::Hit(range) if (range - 6.0).abs() < 1e-4));
+    }
+
+    #[test]
+    fn named_scanners_have_the_readings_and_the_range_of_their_data_sheets() {
+        let facts = [
+            ("lds-01", 360.0, 360, 3.5),
+            ("lds-02", 360.0, 360, 8.0),
+            ("rplidar-a1", 360.0, 360, 12.0),
+            ("rplidar-c1", 360.0, 500, 12.0),
+            ("ust-10lx", 270.0, 1081, 10.0),
+            ("utm-30lx", 270.0, 1081, 30.0),
+            ("lms-200", 180.0, 181, 30.0),
+            ("lms-291", 180.0, 361, 30.0),
+            // Its data sheet has 682 steps, from the 44th to the 725th.
+            ("urg-04lx", 240.0, 683, 4.0),
+        ];
+        assert_eq!(SCANNERS.map(|scanner| scanner.name), facts.map(|fact| fact.0));
+        let plan = plan(&[([[-60.0, 0.0], [60.0, 0.0]], 2.0)]);
+        for (name, field_of_view, count, range) in facts {
+            let params = ScannerParams::named(name).unwrap();
+            let empty = ScannerParams {
+                field_of_view: params.field_of_view,
+                angular_step: params.angular_step,
+                least_range: params.least_range,
+                range: params.range,
+                ..ScannerParams::PLAIN
+            };
+            assert_eq!(params.doors, ScannerParams::DEFAULT.doors, "{name}: the usual building");
+            let pose = Pose { position: [0.0; 2], heading: 0.3 };
+            let scan = LaserScanner::new(&plan, &empty, 1).scan(pose, 1, 0.0).unwrap();
+            assert_eq!(scan.ranges().len(), count, "{name}");
+            // The last reading of a full circle would be the first one.
+            let off = field_of_view - scan.field_of_view().to_degrees();
+            assert!((-1e-6..params.angular_step + 1e-6).contains(&off), "{name}: {off}");
+            // From the middle of a corridor 120 m long it sees the walls up to its range, and nothing beyond.
+            let farthest = scan.readings().filter_map(|(_, reading)| match reading {
+                Reading::Hit(range) => Some(range),
+                _ => None,
+            });
+            let farthest = farthest.fold(0.0, f64::max);
+            assert!((0.6 * range..range).contains(&farthest), "{name}: {farthest}");
+            assert_eq!(reading(&scan, -0.3_f64.to_degrees()), Reading::NoReturn, "{name}");
+        }
+        assert_eq!(ScannerParams::named("UTM-30LX"), ScannerParams::named("utm-30lx"));
+        assert_eq!(ScannerParams::named("vlp-16"), None);
+    }
+
+    #[test]
+    fn a_range_of_3_5_m_is_enough_for_corridors_of_3_m() {
+        let scanner = ScannerParams::named("lds-01").unwrap();
+        assert_eq!(scanner.check_range(3.0), Ok(()));
+        let error = scanner.check_range(3.2).unwrap_err().to_string();
+        assert!(error.contains("3.5 m") && error.contains("needs 3.6 m"), "{error}");
+    }
+
+    #[test]
+    fn noise_that_is_a_part_of_the_range_grows_with_it() {
+        let params = ScannerParams { range_noise: 0.01, ..ScannerParams::PLAIN };
+        let (noisy, plain) = (scans(params), scans(ScannerParams::PLAIN));
+        let pairs = noisy.iter().zip(&plain);
+        let pairs = pairs.flat_map(|(noisy, plain)| noisy.ranges().iter().zip(plain.ranges()));
+        let parts: Vec<f64> =
+            pairs.map(|(&noisy, &plain)| f64::from(noisy / plain) - 1.0).collect();
+        let squares: f64 = parts.iter().map(|part| part * part).sum();
+        let deviation = (squares / parts.len() as f64).sqrt();
+        assert!((deviation - 0.01).abs() < 0.0001, "{deviation}");
     }
 
     /// Scans from many places in a corridor.

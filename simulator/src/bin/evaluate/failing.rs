@@ -3,10 +3,7 @@
 use std::{collections::BTreeMap, io::Write, path::Path};
 
 use serde_json::{Value, json};
-use toposlam_model::{
-    floor_plan::FloorPlan,
-    format::{named_world::NamedWorld, world_file},
-};
+use toposlam_model::format::{named_world::NamedWorld, world_file};
 use toposlam_terminal::{
     CliError,
     json::print_line,
@@ -16,7 +13,7 @@ use toposlam_terminal::{
     text::{counted, print_hanging},
 };
 
-use super::report::EvaluationReport;
+use super::{failed_runs::plan_world, report::EvaluationReport};
 use toposlam_vision::annotate;
 
 use toposlam_simulator::{
@@ -107,11 +104,8 @@ fn write_steps(
 
 /// The floor plan of a view, as a world that starts at the marker.
 fn plan_of(view: &RenderedView) -> NamedWorld {
-    let plan = FloorPlan::clone(&view.plan);
     let about = format!("The floor plan of view {}", view.number);
-    let names = plan.junctions().iter().map(|junction| junction.name.clone()).collect();
-    let world = NamedWorld::numbered(&view.plan_name, &about, plan.graph().clone(), view.marker);
-    NamedWorld { vertex_names: names, plan: Some(plan), ..world }
+    plan_world(&view.plan_name, &about, &view.plan, view.marker)
 }
 
 pub(super) fn calibration_name(calibration: Calibration) -> &'static str {

@@ -1,19 +1,24 @@
 //! `evaluate laser`: compares junctions that are sensed with a laser scanner with the truth.
 
-use std::{io::Write, path::PathBuf};
+use std::io::Write;
 
 use clap::ValueEnum;
 use serde_json::{Map, json};
+use toposlam_logs::record::StoppedBy;
+use toposlam_model::format::named_world::NamedWorld;
 use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,
     method_options::{SafeguardOptions, safeguards_in_words},
-    text::{counted, print_indented},
+    progress::StopSignal,
+    remark,
+    text::{counted, print_indented, quoted},
 };
 use toposlam_vision::laser::params::LaserParams;
 
 use super::{
     control,
+    failed_runs::{FailedOption, FailedSimulation},
     report::{EvaluationReport, MeasurementEnd, ReportArguments, measure},
     robots::{PLANS, RandomPlans, usual_plans},
 };
@@ -21,15 +26,15 @@ use toposlam_simulator::{
     RobotEquipment, ScannerParams,
     evaluation::{
         laser::{
-            corridor_world::BuildingKind,
+            corridor_world::{BuildingKind, CorridorWorld},
             judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict, WalkSampler},
             laser_report,
             scanned_run::ScannedRun,
         },
         traversals::{JudgedTraversal, TraversalSampler},
     },
-    options::robot_sensor::read_scanner,
-    sample_verdict::SampleVerdict,
+    options::robot_sensor::{ScannerOption, read_scanner},
+    run::RobotOutcome,
 };
 
 /// Measure sensing with a laser scanner on random walks in random buildings
@@ -49,6 +54,8 @@ use toposlam_simulator::{
 /// the map and the pose are, and wrong if the robot does not notice that they are not; otherwise it gave up. With
 /// --recover it goes on after a contradiction.
 ///
+/// Without --scanner, the usual scanner covers 360 and 180 degrees in turn.
+///
 /// Control is measured in floor plans with right angles: the robot drives by its scans from junction to
 /// junction, in the traversals of `evaluate control --sensor laser` with the same seed. `evaluate runs --sensor
 /// laser` measures whole runs of that robot.
@@ -61,7 +68,8 @@ Examples:
   evaluate laser --drift 5                odometry that drifts
   evaluate laser --buildings long         other buildings
   evaluate laser --walks 0 --runs 20 --recover
-  evaluate laser --scanner scanner.toml   another scanner
+  evaluate laser --scanner lds-01         another scanner
+  evaluate laser --walks 0 --recover --failed failed
   evaluate laser --walk 17                each visit of one walk
 
 A target is met if the 95 % interval of the rate is within it, missed if the \
@@ -97,13 +105,13 @@ pub(super) struct EvaluateLaserArguments {
     /// The most that the heading of the odometry drifts, in degrees in 10 m
     #[arg(long, default_value_t = 1.0, value_name = "DEGREES", value_parser = drift)]
     drift: f64,
-    /// Parameters of the scanner and of what makes its scans harder to read, .toml [default: the usual
-    /// ones, with a field of view of 360 and of 180 degrees in turn]
-    #[arg(long, value_name = "FILE")]
-    scanner: Option<PathBuf>,
+    #[command(flatten)]
+    scanner: ScannerOption,
     /// Measure only the walk with this number, and print each of its visits
     #[arg(long, value_name = "N", conflicts_with_all = ["walks", "runs", "traversals"])]
     walk: Option<u64>,
+    #[command(flatten)]
+    failed: FailedOption,
     #[command(flatten)]
     report: ReportArguments,
 }
@@ -111,7 +119,12 @@ pub(super) struct EvaluateLaserArguments {
 impl EvaluateLaserArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut sheet = self.report.begin()?;
-        let scanner = self.scanner.as_deref().map(read_scanner).transpose()?;
+        let failed = self.failed.begin()?;
+        let scanner = self.scanner.given.as_deref().map(read_scanner).transpose()?;
+        if let Some(scanner) = &scanner {
+            let is_enough = scanner.check_range(CorridorWorld::WIDEST);
+            is_enough.map_err(|error| CliError::at("--scanner", error))?;
+        }
         let sampler = WalkSampler {
             seed: self.seed,
             buildings: self.buildings,
@@ -158,6 +171,18 @@ impl EvaluateLaserArguments {
         for run in &runs {
             add_run(run, &mut sheet)?;
         }
+        if let Some(mut failed) = failed {
+            for run in runs.iter().filter(|run| run.outcome != RobotOutcome::Right) {
+                let Some(failed_run) = self.failed_run(run, &sampler) else { continue };
+                failed.add(&failed_run, |head| {
+                    let stopped = StoppedBy(&StopSignal);
+                    let logged = sampler.logged_run(run.number, method, &head, stopped);
+                    let (run, log) = logged.map_err(|error| CliError::at("--failed", error))?;
+                    run.map(|_| log).ok_or(CliError::Interrupted)
+                })?;
+            }
+            remark!("{}", failed.finish()?);
+        }
         for made in &traversals {
             if let Some(reason) = made.outcome.reason() {
                 sheet.failure(control::named(made), reason)?;
@@ -201,6 +226,39 @@ impl EvaluateLaserArguments {
         Ok(writeln!(out, "  odometry drifts by up to {} {degrees} in 10 m\n", self.drift)?)
     }
 
+    /// A run that failed, as it is written.
+    fn failed_run(&self, run: &ScannedRun, sampler: &WalkSampler) -> Option<FailedSimulation> {
+        let ScannedRun { number, outcome, .. } = run;
+        let method = self.safeguards.folding();
+        let (graph, start) = sampler.run_world(*number)?;
+        let settings = WalkSampler::run_settings(&graph, method).recorded().to_string();
+        let about = format!("The building of run {number} of seed {}", self.seed);
+        let name = format!("building-{}-{number}", self.seed);
+        let buildings = self.buildings.to_possible_value()?;
+        let mut words = vec![
+            format!("evaluate laser --walks 0 --traversals 0 --runs {}", number + 1),
+            format!("--seed {} --buildings {}", self.seed, buildings.get_name()),
+            format!("--drift {}", self.drift),
+        ];
+        words.extend(self.safeguards.arguments());
+        let scanner = self.scanner.given.as_ref();
+        words
+            .extend(scanner.map(|given| format!("--scanner {}", quoted(&given.to_string_lossy()))));
+        let command = words.join(" ");
+        Some(FailedSimulation {
+            seed: self.seed,
+            number: *number,
+            verdict: in_words_of(outcome),
+            reason: outcome.reason().unwrap_or_default(),
+            world: NamedWorld::numbered(&name, &about, graph, Some(start)),
+            start,
+            robot_seed: self.seed,
+            vision: None,
+            command: Box::new(move |_| command.clone()),
+            settings,
+        })
+    }
+
     /// Adds the visits of a walk: those that are not right, or all if it is the only walk.
     fn add_walk(&self, walk: &JudgedWalk, sheet: &mut EvaluationReport) -> Result<(), CliError> {
         for visit in &walk.visits {
@@ -233,11 +291,7 @@ impl EvaluateLaserArguments {
 
 fn add_run(run: &ScannedRun, sheet: &mut EvaluationReport) -> Result<(), CliError> {
     let ScannedRun { number, moves, way, recoveries, tally, outcome } = run;
-    let verdict = match outcome.verdict() {
-        SampleVerdict::Right => "right",
-        SampleVerdict::Undecided => "gave up",
-        SampleVerdict::Wrong => "wrong",
-    };
+    let verdict = in_words_of(outcome);
     let reason = outcome.reason();
     if let Some(reason) = &reason {
         let moves = counted(*moves as usize, "move");
@@ -250,6 +304,14 @@ fn add_run(run: &ScannedRun, sheet: &mut EvaluationReport) -> Result<(), CliErro
         "missing_percepts": tally.passed, "verdict": verdict, "reason": reason,
     });
     sheet.line("run", &line)
+}
+
+fn in_words_of(outcome: &RobotOutcome<String>) -> &'static str {
+    match outcome {
+        RobotOutcome::Right => "right",
+        RobotOutcome::GaveUp(_) => "gave up",
+        RobotOutcome::Wrong(_) => "wrong",
+    }
 }
 
 fn in_words(visit: &JudgedLaserVisit) -> String {

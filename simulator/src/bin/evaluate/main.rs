@@ -1,6 +1,7 @@
 //! `evaluate WHAT`: compares sensing, driving and whole runs with the ground truth.
 
 mod control;
+mod failed_runs;
 mod failing;
 mod laser;
 mod lengths;

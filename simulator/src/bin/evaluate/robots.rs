@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use toposlam_terminal::{CliError, input, progress::Progress};
+use toposlam_terminal::{CliError, input, progress::Progress, text::quoted};
 use toposlam_vision::camera::Camera;
 
 use super::report::{ReportArguments, unlearned, unmeasured};
@@ -11,7 +11,7 @@ use toposlam_simulator::{
     options::{
         appearance::{ImageSize, looks},
         noise,
-        robot_sensor::{SensorChoice, needs_camera, one_sensor},
+        robot_sensor::{ScannerOption, SensorChoice, needs_camera, one_sensor},
     },
     plans,
     random_plan::{random_plan, random_plan_with},
@@ -39,9 +39,8 @@ pub(super) struct RobotArguments {
     /// The sensor of the robots: camera or laser. A robot with a laser scanner drives by its scans
     #[arg(long, value_name = "SENSOR", default_value = "camera", value_parser = one_sensor())]
     sensor: SensorChoice,
-    /// With --sensor laser: parameters of the scanner and of what makes scans harder to read, .toml
-    #[arg(long, value_name = "FILE")]
-    scanner: Option<PathBuf>,
+    #[command(flatten)]
+    scanner: ScannerOption,
     /// Multiple of the default noise of wheels and odometry, and of sensing without images
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise, allow_hyphen_values = true)]
     pub(super) noise: f64,
@@ -67,16 +66,22 @@ impl RobotArguments {
         random: RandomPlans,
         most: usize,
     ) -> Result<Vec<NamedPlan>, CliError> {
-        if self.plan.is_empty() {
-            usual_plans(self.seed, random, most)
+        let plans = if self.plan.is_empty() {
+            usual_plans(self.seed, random, most)?
         } else {
-            read_plans(&self.plan)
+            read_plans(&self.plan)?
+        };
+        if let Some(scanner) = self.sensor.scanner(self.scanner.given.as_deref())? {
+            let widths = plans.iter().map(|(_, plan)| plan.hallway_width());
+            let is_enough = scanner.check_range(widths.fold(0.0, f64::max));
+            is_enough.map_err(|error| CliError::at("--scanner", error))?;
         }
+        Ok(plans)
     }
 
     /// The sensors of the robots.
     pub(super) fn equipment(&self) -> Result<RobotEquipment, CliError> {
-        if let Some(scanner) = self.sensor.scanner(self.scanner.as_deref())? {
+        if let Some(scanner) = self.sensor.scanner(self.scanner.given.as_deref())? {
             return if self.images {
                 Err(needs_camera("--images"))
             } else {
@@ -92,6 +97,20 @@ impl RobotArguments {
         let sensors = LearnedSensors::new(&camera, &looks, &progress);
         progress.finish();
         sensors.map(RobotEquipment::Images).map_err(unlearned)
+    }
+
+    /// The options of `toposlam simulate` for such a robot.
+    pub(super) fn sensing_options(&self, look: Option<&BuildingLook>) -> Vec<String> {
+        if self.sensor == SensorChoice::Laser {
+            let scanner = self.scanner.given.as_ref();
+            let scanner =
+                scanner.map(|given| format!("--scanner {}", quoted(&given.to_string_lossy())));
+            return ["--sensor laser".to_owned()].into_iter().chain(scanner).collect();
+        }
+        match look {
+            Some(look) => vec![format!("--look {} --size {}", look.name, self.size.name())],
+            None => vec!["--by-scene".to_owned()],
+        }
     }
 
     /// What the robots take at each step.

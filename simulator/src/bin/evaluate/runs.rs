@@ -8,19 +8,23 @@ use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,
     method_options::{MethodOptions, safeguards_in_words},
-    text::{counted, grouped, print_hanging, tenths},
+    progress::must_stop,
+    remark,
+    text::{counted, grouped, print_hanging, quoted, tenths},
 };
 
 use super::{
+    failed_runs::{FailedOption, FailedSimulation, plan_world},
     report::{MeasurementEnd, measure, number},
     robots::{RandomPlans, RobotArguments},
 };
 use toposlam_simulator::{
     FAULTS, RobotEquipment,
-    evaluation::run_sampler::{JudgedRun, RunSampler},
+    evaluation::run_sampler::{JudgedRun, RobotCase, RunSampler},
     run::{RunOutcome, WayToMarker},
     sample_verdict::{SampleTally, SampleVerdict},
 };
+use toposlam_vision::camera::calibration;
 
 /// Measure whole runs: is every building mapped correctly, in the specified number of moves?
 ///
@@ -37,6 +41,7 @@ Examples:
   evaluate runs --sensor laser --plans 40       by a laser scanner
   evaluate runs --faults --plans 100            one fault in each run
   evaluate runs --faults --recover
+  evaluate runs --faults 2 --recover --failed failed
   evaluate runs --algorithm algorithm1          more moves
 
 With --faults, a run may also be given up if the robot reports a contradiction. \
@@ -66,6 +71,8 @@ pub(super) struct EvaluateRunsArguments {
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     faults: Option<u32>,
     #[command(flatten)]
+    failed: FailedOption,
+    #[command(flatten)]
     robots: RobotArguments,
 }
 
@@ -75,6 +82,7 @@ const MOST_WITH_IMAGES: usize = 12;
 impl EvaluateRunsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut sheet = self.robots.report.begin()?;
+        let failed = self.failed.begin()?;
         let equipment = self.robots.equipment()?;
         let (random, most) = match equipment {
             RobotEquipment::Images(_) => (RandomPlans::Any(self.plans), MOST_WITH_IMAGES),
@@ -137,6 +145,19 @@ impl EvaluateRunsArguments {
         });
         let ratio = (certificates > 0).then(|| moves as f64 / certificates as f64);
         self.print_moves(&judged, ratio.filter(|_| !has_faults), &mut sheet.text)?;
+        if let Some(mut failed) = failed {
+            for run in judged.iter().filter(|run| run.ending != RunOutcome::Right) {
+                let log = |head| {
+                    let log = runs.log(&run.case, &equipment, &head);
+                    log.map_err(|error| CliError::at("--failed", error))
+                };
+                failed.add(&self.failed_run(run, &runs, &equipment), log)?;
+                if must_stop() {
+                    break;
+                }
+            }
+            remark!("{}", failed.finish()?);
+        }
         let line = json!({
             "runs": all, "seed": seed,
             "moves_total": moves, "certificate_total": certificates, "ratio": ratio,
@@ -151,6 +172,47 @@ impl EvaluateRunsArguments {
         let holds = format!("holds in these runs: {holds}");
         let verdict = ending.verdict(outcome, [&holds, "violated", ""]);
         sheet.finish(out, ("runs", line), outcome, verdict)
+    }
+
+    /// A run that failed, as it is written.
+    fn failed_run(
+        &self,
+        run: &JudgedRun,
+        runs: &RunSampler,
+        equipment: &RobotEquipment,
+    ) -> FailedSimulation {
+        let JudgedRun { case, ending, .. } = run;
+        let RobotCase { number, plan_name, config } = case;
+        let seed = self.robots.seed;
+        let about = format!("The floor plan of run {number} of seed {seed}");
+        let world = plan_world(plan_name, &about, &config.plan, Some(config.marker));
+        let look = equipment.sensors().map(|sensors| (sensors, sensors.look(*number)));
+        let vision = look.map(|(sensors, look)| {
+            [calibration::to_toml(sensors.camera()), sensors.colours(look).to_toml()]
+        });
+        let settings = runs.settings(case);
+        let mut options = self.method.arguments();
+        options.push(format!("--max-darts {}", settings.dart_bound));
+        options.push(format!("--seed {}", config.seed));
+        if config.noise.to_bits() != 1_f64.to_bits() {
+            options.push(format!("--noise {}", config.noise));
+        }
+        options.extend(config.faults.iter().map(|fault| format!("--fault {fault}")));
+        options.extend(self.robots.sensing_options(look.map(|(_, look)| look)));
+        FailedSimulation {
+            seed,
+            number: *number,
+            verdict: if ending.gave_up() { "gave up" } else { "wrong" },
+            reason: ending.reason().unwrap_or_default(),
+            world,
+            start: config.marker,
+            robot_seed: config.seed,
+            vision,
+            command: Box::new(move |world| {
+                format!("toposlam simulate {} {}", quoted(world), options.join(" "))
+            }),
+            settings: settings.to_string(),
+        }
     }
 
     /// Prints what all runs took.

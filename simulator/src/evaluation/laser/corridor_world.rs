@@ -75,6 +75,9 @@ struct Lattice {
 }
 
 impl CorridorWorld {
+    /// The greatest width of a corridor, in metres.
+    pub const WIDEST: f64 = WIDTHS[1];
+
     /// The random building of a kind and a seed. It has a junction with at least three doors.
     pub fn random(kind: BuildingKind, seed: u64) -> Self {
         let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);

@@ -1,24 +1,36 @@
 //! A robot that maps a building by its laser scanner alone: it goes on with what it derives, right or wrong.
 //!
 //! It drives along a corridor until it is within what may be a junction. There it turns around once, and drives into
-//! each arm of which it does not see enough, until it has driven as far as makes an arm, or cannot go on. A pilot keeps it
-//! on the floor, and a detector of its own reports the marker.
+//! each arm of which it does not see enough, until it has driven as far as makes an arm, or cannot go on. If its scanner
+//! does not see far enough for arms, it stops where any ways meet, and drives into each of them. A pilot keeps it on the
+//! floor, and a detector of its own reports the marker.
 
-use std::f64::consts::{PI, TAU};
+use std::{
+    f64::consts::{PI, TAU},
+    ops::Range,
+    sync::Arc,
+};
 
-use nalgebra::{Isometry2, Point2};
+use nalgebra::{Isometry2, Point2, Vector2};
 use thiserror::Error;
+use toposlam_logs::record::{
+    Arrival, Event, EventId, EventKind, Frame, RunEnd, RunEnding, RunObserver, nanoseconds,
+};
 use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose, scene::wrapped},
     embedded_graph::Dart,
-    enumerate::Watch,
     mapping::Relocate,
     percept::{Door, Percept, Sighting},
     world::World,
 };
 use toposlam_vision::{
     geometry::{direction, distance, motion_between},
-    laser::{params::LaserParams, scan::Scan, sensor::LaserSensor, way_graph::WayGraph},
+    laser::{
+        params::LaserParams,
+        scan::Scan,
+        sensor::LaserSensor,
+        way_graph::{WayGraph, WayNode},
+    },
     place::{Certainty, PlaceArm, PlaceView, SeenPlace},
     visits::Visits,
 };
@@ -67,14 +79,25 @@ pub(super) struct LaserRobot<'w> {
     params: LaserParams,
     /// The facing dart: where the marker lies.
     facing: Dart,
-    watch: &'w dyn Watch,
+    observer: &'w mut dyn RunObserver,
+    /// The number of events that were observed, and of moves.
+    events: u64,
+    moves: u64,
     sensed: usize,
+    /// Whether its scanner sees arms far enough.
+    sees_arms: bool,
+    /// Where it stands if it drives into an arm from there only to see how far it leads.
+    drives_from: Option<Point2<f64>>,
+    /// The steps in which it drove into arms, or past an opening, and came back.
+    side_trips: Vec<Range<usize>>,
     /// From the local map to the frame of odometry, in the last view.
     odometry_from_map: Isometry2<f64>,
     /// What may be junctions, in each view since it began to look around.
     seen: Vec<Vec<SeenPlace>>,
-    /// The centre and the extent of the place that it left last, while it is near, on the local map.
-    left: Option<(Point2<f64>, f64)>,
+    /// Where any ways meet near the robot, in each of these views.
+    openings: Vec<Option<SeenPlace>>,
+    /// The place that it left last, while it is near, on the local map.
+    left: Option<LeftPlace>,
     /// Where it turned around last, on the local map, and the length of its way then.
     looked: Option<(Point2<f64>, f64)>,
     /// Whether the last view shows an opening beside it into which its scanner may not have looked.
@@ -82,6 +105,13 @@ pub(super) struct LaserRobot<'w> {
     /// The directions on the plan of the doors of the place where it stands, clockwise from the one by which it came in.
     doors: Option<Vec<f64>>,
     pub(super) tally: PerceptTally,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct LeftPlace {
+    centre: Point2<f64>,
+    extent: f64,
+    is_junction: bool,
 }
 
 enum LegResult {
@@ -104,8 +134,9 @@ impl<'w> LaserRobot<'w> {
         params: &LaserParams,
         driver: WalkDriver,
         facing: Dart,
-        watch: &'w dyn Watch,
+        observer: &'w mut dyn RunObserver,
     ) -> Self {
+        let sees_arms = scanner.params.range >= ROBOT.sees_arms;
         Self {
             world,
             smoothed,
@@ -115,10 +146,16 @@ impl<'w> LaserRobot<'w> {
             driver,
             params: *params,
             facing,
-            watch,
+            observer,
+            events: 0,
+            moves: 0,
             sensed: 0,
+            sees_arms,
+            drives_from: None,
+            side_trips: Vec::new(),
             odometry_from_map: Isometry2::identity(),
             seen: Vec::new(),
+            openings: Vec::new(),
             left: None,
             looked: None,
             is_at_opening: false,
@@ -128,7 +165,7 @@ impl<'w> LaserRobot<'w> {
     }
 
     /// Drives away in a direction on the plan until it is at a junction, or cannot go on.
-    pub(super) fn drive(&mut self, towards: f64) -> Result<(), ScanFailure> {
+    fn drive(&mut self, towards: f64) -> Result<(), ScanFailure> {
         self.doors = None;
         let begin = self.driver.at;
         let mut leg = self.pilot.leave(begin, towards);
@@ -164,12 +201,19 @@ impl<'w> LaserRobot<'w> {
         }
         if along < self.params.arm.min_arm {
             self.drive_along(points.into_iter().rev())?;
-            self.left = Some((self.on_local_map(), 1.0));
+            self.left =
+                Some(LeftPlace { centre: self.on_local_map(), extent: 1.0, is_junction: true });
             return Err(ScanFailure::Alcove);
         }
         self.left = None;
-        let back = self.driver.heading.unwrap_or_default() + PI;
-        self.arrive(vec![wrapped(back)]);
+        // Its heading may be that of a short way to look at something.
+        let before =
+            self.driver.before_entering(self.driver.at, ROBOT.near_place, &self.side_trips);
+        let back = before.map_or_else(
+            || wrapped(self.driver.heading.unwrap_or_default() + PI),
+            |before| direction(self.driver.at, before),
+        );
+        self.arrive(vec![back]);
         Ok(())
     }
 
@@ -200,10 +244,15 @@ impl<'w> LaserRobot<'w> {
         let mut closest: Option<(f64, SeenPlace)> = None;
         while self.sensed < self.driver.steps.len() {
             self.sense_step()?;
-            let place = self.visits.status().filter(|place| !self.is_left(place));
+            let place = if self.sees_arms {
+                self.visits.status()
+            } else {
+                self.openings.last().cloned().flatten()
+            };
+            let place = place.filter(|place| !self.is_left(place));
             let place = place.map(|place| (distance(place.centre, self.on_local_map()), place));
             match (place, &closest) {
-                (None, None) if self.is_at_opening => {
+                (None, None) if self.is_at_opening && self.sees_arms => {
                     self.driver.stop_after(self.sensed);
                     self.look_around()?;
                     return Ok(LegResult::LookedAround);
@@ -214,11 +263,42 @@ impl<'w> LaserRobot<'w> {
                 _ => break,
             }
         }
-        let Some((_, place)) = closest else { return Ok(LegResult::Driven) };
+        let Some((_, mut place)) = closest else { return Ok(LegResult::Driven) };
+        let noticed = self.sensed;
+        if !self.sees_arms {
+            self.see_all_of(&mut place)?;
+            self.side_trips.push(noticed..self.sensed);
+        }
         self.driver.stop_after(self.sensed);
         let entry = self.came_from(&place);
         self.go_to(&place)?;
+        if !self.sees_arms {
+            // There and back.
+            self.side_trips.push(noticed..self.sensed);
+        }
         Ok(LegResult::AtPlace(place, entry))
+    }
+
+    /// Drives on past an opening, so that its other side is on the local map, too.
+    fn see_all_of(&mut self, opening: &mut SeenPlace) -> Result<(), ScanFailure> {
+        let begin = self.driver_way();
+        while self.sensed < self.driver.steps.len()
+            && self.driver_way() - begin < ROBOT.past_opening
+        {
+            self.sense_step()?;
+        }
+        let within = ROBOT.past_opening + ROBOT.near_opening;
+        if let Some(seen) = self.opening(self.on_local_map(), within)
+            && !self.is_left(&seen)
+        {
+            *opening = seen;
+        }
+        Ok(())
+    }
+
+    /// The length of the way to the last scan, in metres.
+    fn driver_way(&self) -> f64 {
+        self.last_step().map_or(0.0, |step| step.way)
     }
 
     /// Goes to the centre of a place, if it can stand there.
@@ -237,9 +317,62 @@ impl<'w> LaserRobot<'w> {
         mut place: SeenPlace,
         entry: f64,
     ) -> Result<Option<Vec<f64>>, ScanFailure> {
-        let doors = self.doors_of(&mut place, entry);
-        self.left = Some((place.centre, place.clearance));
+        let doors = if self.sees_arms {
+            self.doors_of(&mut place, entry)
+        } else {
+            self.driven_doors(&place, entry)
+        };
+        let is_junction = self.sees_arms || !matches!(doors, Ok(None));
+        let SeenPlace { centre, clearance: extent, .. } = place;
+        self.left = Some(LeftPlace { centre, extent, is_junction });
         doors
+    }
+
+    /// The same if the robot drives into each way that leaves an opening, the one straight on last.
+    fn driven_doors(
+        &mut self,
+        opening: &SeenPlace,
+        entry: f64,
+    ) -> Result<Option<Vec<f64>>, ScanFailure> {
+        self.look_around()?;
+        let mut doors = vec![entry];
+        let mut tried: Vec<f64> = Vec::new();
+        for _ in 0..ROBOT.looks {
+            let is_old = |way: f64, old: f64| wrapped(way - old).abs() < ROBOT.same_way;
+            let is_new = |way: &f64| !doors.iter().chain(&tried).any(|&old| is_old(*way, old));
+            let mut ways: Vec<f64> =
+                self.ways_of(opening).into_iter().filter(|way| is_new(way)).collect();
+            if doors.len() + ways.len() < 3 {
+                break;
+            }
+            let straight_on = |way: f64| wrapped(way - entry - PI).abs();
+            ways.sort_by(|&one, &other| straight_on(other).total_cmp(&straight_on(one)));
+            let Some(&way) = ways.first() else { break };
+            self.drives_from = Some(self.driver.at);
+            let (driven, is_arm) = self.look_into(way)?;
+            tried.push(way);
+            if is_arm && !doors.iter().any(|&door| is_same(door, driven)) {
+                doors.push(driven);
+            }
+        }
+        Ok((doors.len() >= 3).then(|| in_order(doors, entry)))
+    }
+
+    /// The directions on the plan of the ways that leave an opening in at least two of the views there.
+    fn ways_of(&self, opening: &SeenPlace) -> Vec<f64> {
+        let turn = self.plan_from_map().rotation.angle();
+        let mut ways: Vec<(f64, usize)> = Vec::new();
+        let here = |seen: &&SeenPlace| distance(seen.centre, opening.centre) < ROBOT.same_place;
+        for seen in self.openings.iter().flatten().filter(here) {
+            for direction in seen.directions() {
+                match ways.iter_mut().find(|way| wrapped(way.0 - direction).abs() < ROBOT.same_way)
+                {
+                    Some(way) => way.1 += 1,
+                    None => ways.push((direction, 1)),
+                }
+            }
+        }
+        ways.into_iter().filter(|way| way.1 > 1).map(|way| wrapped(way.0 + turn)).collect()
     }
 
     /// The same. The place becomes the one that it has seen last.
@@ -269,7 +402,7 @@ impl<'w> LaserRobot<'w> {
             let uncertain = self.uncertain_arms(&place).into_iter().map(|arm| wrapped(arm + turn));
             let next = uncertain.into_iter().find(|&arm| !is_same(arm, entry) && !is_known(arm));
             if let Some(arm) = next {
-                let is_arm = self.look_into(arm)?;
+                let (_, is_arm) = self.look_into(arm)?;
                 known.push((arm, is_arm));
                 continue;
             }
@@ -301,9 +434,10 @@ impl<'w> LaserRobot<'w> {
         Err(ScanFailure::Undecided)
     }
 
-    /// Drives into an arm and back. Returns whether it could drive as far as makes an arm.
-    fn look_into(&mut self, towards: f64) -> Result<bool, ScanFailure> {
-        let begin = self.driver.at;
+    /// Drives into an arm and back. Returns the direction in which it drove, and whether it could drive as far as makes an
+    /// arm.
+    fn look_into(&mut self, towards: f64) -> Result<(f64, bool), ScanFailure> {
+        let (begin, first) = (self.driver.at, self.driver.steps.len());
         let mut points = vec![begin];
         let mut leg = Some(self.pilot.leave(begin, towards));
         let (mut left, mut at) = (self.params.arm.min_arm, begin);
@@ -319,9 +453,13 @@ impl<'w> LaserRobot<'w> {
             }
             leg = self.pilot.after(&next);
         }
+        // It may have gone through the middle of the place first.
+        let driven = direction(begin, self.driver.at);
         self.drive_along(points.into_iter().rev().skip(1))?;
+        self.drives_from = None;
+        self.side_trips.push(first..self.driver.steps.len());
         self.look_around()?;
-        Ok(left <= 0.0)
+        Ok((driven, left <= 0.0))
     }
 
     /// Goes a little further, looks around there, and comes back.
@@ -338,6 +476,7 @@ impl<'w> LaserRobot<'w> {
     fn look_around(&mut self) -> Result<(), ScanFailure> {
         self.looked = Some((self.on_local_map(), self.driver.way));
         self.seen.clear();
+        self.openings.clear();
         self.driver.look_around();
         self.sense()?;
         self.is_at_opening = false;
@@ -360,6 +499,43 @@ impl<'w> LaserRobot<'w> {
         let ways = WayGraph::new(skeleton, &map.clearances);
         let is_near = |node: usize| distance(ways.nodes[node].point, robot) < ROBOT.opening;
         (0..ways.nodes.len()).any(|node| is_near(node) && ways.at(node).len() >= 3)
+    }
+
+    /// Where any ways of the local map meet within a distance of the robot, and the directions in which they leave.
+    fn opening(&self, robot: Point2<f64>, within: f64) -> Option<SeenPlace> {
+        let map = self.visits.sensor().map()?;
+        let ways = WayGraph::new(map.skeleton.as_ref()?, &map.clearances);
+        let meets: Vec<usize> =
+            (0..ways.nodes.len()).filter(|&node| ways.at(node).len() >= 3).collect();
+        let off = |&node: &usize| distance(ways.nodes[node].point, robot);
+        let meet = nearest(meets.iter().copied(), off).filter(|node| off(node) < within)?;
+        let WayNode { point, clearance, .. } = ways.nodes[meet];
+        // Corridors that cross at an angle meet in several points.
+        let is_of_group =
+            |&node: &usize| distance(ways.nodes[node].point, point) < clearance + ROBOT.one_opening;
+        let group: Vec<usize> = meets.into_iter().filter(is_of_group).collect();
+        let points = || group.iter().map(|&node| ways.nodes[node].point);
+        let centre = Point2::from(
+            points().map(|point| point.coords).sum::<Vector2<f64>>() / group.len() as f64,
+        );
+        let spread = points().map(|point| distance(point, centre)).fold(0.0, f64::max);
+        let is_outside = |point: &Point2<f64>| {
+            distance(*point, centre) >= spread + clearance + ROBOT.one_opening
+        };
+        let mut arms: Vec<PlaceArm> = Vec::new();
+        for way in &ways.ways {
+            for node in way.nodes.into_iter().filter(|node| group.contains(node)) {
+                let line = way.clone().from_node(node).line;
+                let outside = line.iter().map(|(point, _)| *point).find(is_outside);
+                let is_inner = way.nodes.iter().all(|node| group.contains(node));
+                let end = line.last().map(|(point, _)| *point).filter(|_| !is_inner);
+                arms.extend(outside.or(end).map(|point| PlaceArm {
+                    direction: direction(centre, point),
+                    certainty: Certainty::Possible,
+                }));
+            }
+        }
+        (arms.len() >= 3).then_some(SeenPlace { centre, clearance, arms })
     }
 
     /// What may be a junction at a place, in a view.
@@ -391,7 +567,7 @@ impl<'w> LaserRobot<'w> {
     fn came_from(&self, place: &SeenPlace) -> f64 {
         let centre = self.plan_from_map() * place.centre;
         let far = place.clearance.max(1.0) + ROBOT.came_from;
-        self.driver.before_entering(centre, far).map_or_else(
+        self.driver.before_entering(centre, far, &self.side_trips).map_or_else(
             || self.driver.heading.unwrap_or_default() + PI,
             |point| direction(centre, point),
         )
@@ -399,8 +575,13 @@ impl<'w> LaserRobot<'w> {
 
     /// Whether a place is the one that it left last.
     fn is_left(&self, place: &SeenPlace) -> bool {
-        self.left.is_some_and(|(centre, clearance)| {
-            distance(centre, place.centre) < ROBOT.left_behind.max(1.5 * clearance)
+        self.left.is_some_and(|left| {
+            let reach = if left.is_junction {
+                ROBOT.left_behind.max(1.5 * left.extent)
+            } else {
+                ROBOT.no_junction
+            };
+            distance(left.centre, place.centre) < reach
         })
     }
 
@@ -413,26 +594,75 @@ impl<'w> LaserRobot<'w> {
 
     /// Takes the scan of the next step.
     fn sense_step(&mut self) -> Result<(), ScanFailure> {
-        if self.watch.stop() {
+        if self.observer.stop() {
             return Err(ScanFailure::Stopped);
         }
         let number = self.sensed;
         self.sensed += 1;
-        let Some(step) = self.driver.steps.get(number) else { return Ok(()) };
+        let Some(&step) = self.driver.steps.get(number) else { return Ok(()) };
         let Ok(scan) = self.scanner.scan(step.pose, number as u64, step.time) else {
             return Ok(());
         };
-        if let Some(view) = self.visits.add_frame((), &scan, &step.odometry) {
+        let scan = Arc::new(scan);
+        let WalkStep { odometry, time: taken, .. } = step;
+        self.emit(EventKind::Odometry(odometry));
+        let frame = Frame { taken, odometry, scan: Some(scan.clone()), ..Frame::default() };
+        self.emit(EventKind::Frame(Frame { id: self.sensed as u64, ..frame }));
+        // What is far from the place is not on its map.
+        let is_far = |from| distance(from, Point2::from(step.pose.position)) > ROBOT.near_place;
+        if self.drives_from.is_some_and(is_far) {
+            return Ok(());
+        }
+        if let Some(view) = self.visits.add_frame((), &scan, &odometry) {
             self.odometry_from_map = view.odometry_from_map;
-            self.is_at_opening = self.is_opening(&view, &scan);
+            if self.sees_arms {
+                self.is_at_opening = self.is_opening(&view, &scan);
+            } else {
+                let opening = self.opening(view.robot.position.into(), ROBOT.near_opening);
+                self.openings.push(opening);
+            }
             self.seen.push(view.possible_places);
         }
         let at = self.on_local_map();
-        if self.left.is_some_and(|(left, clearance)| {
-            distance(left, at) > clearance + 2.0 * ROBOT.left_behind
+        if self.left.is_some_and(|LeftPlace { centre, extent, .. }| {
+            distance(centre, at) > extent + 2.0 * ROBOT.left_behind
         }) {
             self.left = None;
         }
+        Ok(())
+    }
+
+    /// Reports an event that happens at the last step.
+    fn emit(&mut self, kind: EventKind) {
+        let Some(step) = self.last_step() else { return };
+        let (time, truth) = (nanoseconds(step.time), Some(step.pose));
+        self.events += 1;
+        let id = EventId(self.events);
+        self.observer.event(&Event { id, time, truth, kind });
+    }
+
+    /// Reports how the run ended.
+    pub(super) fn end(&mut self, ending: RunEnding) {
+        self.emit(EventKind::End(RunEnd { moves: self.moves, ending }));
+    }
+
+    /// Reports that it stands at a place with these doors, after the move with this number if it is known.
+    fn report_arrival(&mut self, number: Option<u32>) {
+        let Some(doors) = self.doors.clone() else { return };
+        let turn = self.last_step().map_or(0.0, |step| step.odometry.heading - step.pose.heading);
+        self.emit(EventKind::Arrival(Arrival {
+            number,
+            degree: doors.len() as u32,
+            sighting: Some(self.sighting(&doors)),
+            shape: None,
+            entry: doors.first().map(|door| wrapped(door + turn)),
+        }));
+    }
+
+    /// Drives to its first place.
+    pub(super) fn begin(&mut self, towards: f64) -> Result<(), ScanFailure> {
+        self.drive(towards)?;
+        self.report_arrival(Some(0));
         Ok(())
     }
 
@@ -502,8 +732,13 @@ impl World for LaserRobot<'_> {
 
     fn traverse(&mut self, door: Door) -> Result<(), ScanFailure> {
         let doors = self.doors.as_ref().ok_or(ScanFailure::Missed)?;
-        let towards = doors.get(door.0 as usize).ok_or(ScanFailure::Missed)?;
-        self.drive(*towards)
+        let &towards = doors.get(door.0 as usize).ok_or(ScanFailure::Missed)?;
+        let number = u32::try_from(self.moves + 1).ok();
+        self.emit(EventKind::Door { number, door });
+        self.drive(towards)?;
+        self.moves += 1;
+        self.report_arrival(number);
+        Ok(())
     }
 }
 
@@ -517,7 +752,11 @@ impl Relocate for LaserRobot<'_> {
             let ahead = self.driver.heading.unwrap_or_default();
             let towards = if number % 2 == 0 { ahead } else { ahead + PI };
             match self.drive(towards) {
-                Ok(()) => return Ok(()),
+                Ok(()) => {
+                    // How many moves lead there is not known.
+                    self.report_arrival(None);
+                    return Ok(());
+                }
                 Err(failure @ (ScanFailure::Stopped | ScanFailure::TooFar)) => return Err(failure),
                 Err(_) => {}
             }

@@ -23,6 +23,22 @@ params! {
         look_memory: f64 = 10.0,
         /// A scanner with a larger field of view sees what is behind the robot.
         all_around: f64 = 6.0,
+        /// A scanner with a range as long as this sees the walls of an arm far enough to be certain of it: those of a
+        /// corridor 2.45 m wide are a tenth of a radian apart there, and what is between them counts as free. A robot with
+        /// another scanner drives into each opening.
+        sees_arms: f64 = 24.5,
+        /// A robot with such a scanner notices ways that meet this near to it, ...
+        near_opening: f64 = 1.5,
+        /// ... takes those that meet this far beyond the clearance of their meeting point for one opening, ...
+        one_opening: f64 = 0.6,
+        /// ... tells ways apart that differ by more than this, ...
+        same_way: f64 = 0.35,
+        /// ... looks into a way up to this far from where it stands, ...
+        near_place: f64 = 3.5,
+        /// ... drives on for this length to see all of it, ...
+        past_opening: f64 = 2.5,
+        /// ... and has left one that is no junction when it is this far from it.
+        no_junction: f64 = 1.0,
         /// What is this near to the centre of a place in a view is the same place.
         at_centre: f64 = 2.0,
         /// An arm is certain if it is in this part of the last views.

@@ -3,17 +3,24 @@
 use std::borrow::Cow;
 
 use rand::seq::IndexedRandom;
+use toposlam_logs::{
+    messages,
+    record::{RunEnding, RunObserver, StoppedBy},
+    recorder::Recorder,
+    writer::LogWriteError,
+};
 use toposlam_model::{
     check::judge_map,
-    embedded_graph::Dart,
+    embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     isomorphism::Candidate,
     mapping::{ExploredMap, FACING, MappingError, MappingMethod},
 };
+use toposlam_robot::run_settings::RunSettings;
 use toposlam_vision::geometry::angle;
 
 use super::{
-    corridor_world::CorridorWorld,
+    corridor_world::{CorridorWorld, SmoothedWorld},
     judged_walk::WalkSampler,
     laser_robot::{LaserRobot, ScanFailure},
     walk::WalkDriver,
@@ -41,13 +48,22 @@ const BEFORE: f64 = 9.0;
 /// The robot gives up if it knows more than twice the darts of the building and this many.
 const SPARE_DARTS: usize = 20;
 
+/// A building, and where the robot begins in it.
+struct RunStart {
+    world: CorridorWorld,
+    smoothed: SmoothedWorld,
+    /// Where the marker lies.
+    facing: Dart,
+    driver: WalkDriver,
+    /// The direction in which the robot drives off.
+    towards: f64,
+}
+
 impl WalkSampler {
-    /// Makes the whole run with this number; `None` if the watch stops.
-    pub fn run(&self, number: u64, method: MappingMethod, watch: &dyn Watch) -> Option<ScannedRun> {
+    fn start(&self, number: u64) -> Option<RunStart> {
         let seed = self.run_seed(number);
         let world = CorridorWorld::random(self.buildings, seed);
         let smoothed = world.smoothed()?;
-        let scanner = self.scanner(&world, number, seed);
         let mut driver = WalkDriver::new(self.drift, seed);
         let graph = &smoothed.graph;
         let starts: Vec<Dart> =
@@ -56,18 +72,66 @@ impl WalkSampler {
         let [start, behind] = smoothed.corridors[facing.at()].map(|place| world.places[place]);
         let off = behind - start;
         driver.at = start + (BEFORE / off.x.hypot(off.y)).min(0.5) * off;
+        Some(RunStart { world, smoothed, facing, driver, towards: angle(-off) })
+    }
+
+    /// The graph of the junctions and dead ends of a run's building, and where its marker lies.
+    pub fn run_world(&self, number: u64) -> Option<(EmbeddedGraph, Dart)> {
+        let RunStart { smoothed, facing, .. } = self.start(number)?;
+        Some((smoothed.graph, facing))
+    }
+
+    /// How the robot of a run maps.
+    pub fn run_settings(graph: &EmbeddedGraph, method: MappingMethod) -> RunSettings {
+        RunSettings::new(method, 2 * graph.dart_count() + SPARE_DARTS)
+    }
+
+    /// Makes the whole run with this number; `None` if the watch stops.
+    pub fn run(&self, number: u64, method: MappingMethod, watch: &dyn Watch) -> Option<ScannedRun> {
+        self.observed_run(number, method, &mut StoppedBy(watch))
+    }
+
+    /// Makes the run with this number, or as much of it as an observer allows, and writes its log, which begins with this
+    /// head.
+    pub fn logged_run(
+        &self,
+        number: u64,
+        method: MappingMethod,
+        head: &messages::Run,
+        observer: impl RunObserver,
+    ) -> Result<(Option<ScannedRun>, Vec<u8>), LogWriteError> {
+        let mut recorder = Recorder::new(Vec::new(), head, None)?;
+        let run = self.observed_run(number, method, &mut (&mut recorder, observer));
+        Ok((run, recorder.finish()?))
+    }
+
+    fn observed_run(
+        &self,
+        number: u64,
+        method: MappingMethod,
+        observer: &mut dyn RunObserver,
+    ) -> Option<ScannedRun> {
+        let RunStart { world, smoothed, facing, driver, towards } = self.start(number)?;
+        let scanner = self.scanner(&world, number, self.run_seed(number));
+        let RunSettings { dart_bound, .. } = Self::run_settings(&smoothed.graph, method);
         let mut robot =
-            LaserRobot::new(&world, &smoothed, scanner, &self.sensing, driver, facing, watch);
-        let begun = robot.drive(angle(-off));
-        if begun == Err(ScanFailure::Stopped) {
+            LaserRobot::new(&world, &smoothed, scanner, &self.sensing, driver, facing, observer);
+        if robot.begin(towards) == Err(ScanFailure::Stopped) {
+            robot.end(RunEnding::Stopped);
             return None;
         }
-        let bound = 2 * graph.dart_count() + SPARE_DARTS;
-        let (mapping, mapped) = method.map_world(&mut robot, bound, &[], &mut ());
+        let (mapping, mapped) = method.map_world(&mut robot, dart_bound, &[], &mut ());
         let (moves, recoveries, outcome) = match mapped {
-            Err(MappingError::World(ScanFailure::Stopped)) => return None,
-            Err(error) => (mapping.moves(), 0, RobotOutcome::GaveUp(error.to_string())),
+            Err(MappingError::World(ScanFailure::Stopped)) => {
+                robot.end(RunEnding::Stopped);
+                return None;
+            }
+            Err(error) => {
+                robot.end(RunEnding::GaveUp(error.to_string()));
+                (mapping.moves(), 0, RobotOutcome::GaveUp(error.to_string()))
+            }
             Ok(mapped) => {
+                robot.end(RunEnding::Mapped);
                 // A robot at no junction is not at its pose in the map.
                 let truly = robot.truth().unwrap_or(Dart(u32::MAX));
                 let outcome = match mapping.map().complete() {

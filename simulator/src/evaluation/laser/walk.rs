@@ -1,6 +1,9 @@
 //! A random walk through a random building, and where the robot is on it.
 
-use std::f64::consts::{PI, TAU};
+use std::{
+    f64::consts::{PI, TAU},
+    ops::Range,
+};
 
 use nalgebra::{Point2, Rotation2, Vector2, center};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
@@ -129,10 +132,19 @@ impl WalkDriver {
         }
     }
 
-    /// Where it was before it entered a circle the last time; `None` if it was never inside or outside.
-    pub(super) fn before_entering(&self, centre: Point2<f64>, radius: f64) -> Option<Point2<f64>> {
+    /// Where it was before it entered a circle the last time, without the steps in these ranges; `None` if it was never
+    /// inside or outside.
+    pub(super) fn before_entering(
+        &self,
+        centre: Point2<f64>,
+        radius: f64,
+        without: &[Range<usize>],
+    ) -> Option<Point2<f64>> {
         let is_outside = |place: &Point2<f64>| distance(*place, centre) >= radius;
-        let places = self.steps.iter().rev().map(|step| step.pose.position.into());
+        let counts =
+            |&(number, _): &(usize, _)| !without.iter().any(|range| range.contains(&number));
+        let places = self.steps.iter().enumerate().rev().filter(counts);
+        let places = places.map(|(_, step)| step.pose.position.into());
         places.skip_while(is_outside).find(is_outside)
     }
 
