@@ -251,7 +251,7 @@ pub fn extract(
             infer_events(&run.seen, marked)
         }
         Evidence::Laser => {
-            let (visits, drift, network) = laser_visits(scans, laser, watch);
+            let (visits, drift, network) = laser_visits(scans, &laser, watch);
             let (events, junctions) = visit_events(visits);
             (run.junctions, run.drift, run.network) = (junctions, drift, Some(network));
             events
@@ -264,7 +264,7 @@ pub fn extract(
 /// because of it; and whether the building is a network of corridors.
 fn laser_visits(
     scans: Vec<PlacedScan>,
-    params: LaserParams,
+    params: &LaserParams,
     watch: &impl Watch,
 ) -> (VisitLog<EventSource>, Option<f64>, NetworkFit) {
     let mut last = 0;
@@ -276,7 +276,7 @@ fn laser_visits(
             EventSource { time: last, ..*source }
         })
         .collect();
-    let log = ScanLog::new(scans.into_iter().map(|placed| (placed.scan, placed.odometry)), params);
+    let log = ScanLog::new(scans.into_iter().map(|placed| (placed.scan, placed.odometry)), *params);
     let mut views = Vec::with_capacity(log.len());
     let mut done = 0;
     while views.len() < log.len() && !watch.stop() {

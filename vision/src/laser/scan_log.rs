@@ -52,6 +52,24 @@ struct LoggedScan {
     rays: Rays,
 }
 
+/// A scan on a local map.
+struct PlacedScan {
+    robot: Point2<f64>,
+    viewpoint: Viewpoint,
+    rays: Rays,
+}
+
+impl LoggedScan {
+    fn placed(&self, map_from_log: &Isometry2<f64>) -> PlacedScan {
+        let placed = moved(map_from_log, &self.pose);
+        PlacedScan {
+            robot: placed.position.into(),
+            viewpoint: Viewpoint::new(&self.scan, &placed),
+            rays: self.rays.moved(&from_robot(&placed)),
+        }
+    }
+}
+
 /// The side of a square, in metres.
 const SQUARE: f64 = 8.0;
 /// Another pass agrees with a local map if at least this part of the hits of its scans, where the map is known, lies ...
@@ -77,7 +95,9 @@ impl ScanLog {
         let mut drift = None;
         if params.matching.rounds == 0 {
             let mut meter = DriftMeter::new(params);
-            all.iter().for_each(|(scan, odometry)| meter.add_scan(scan, odometry));
+            for (scan, odometry) in &all {
+                meter.add_scan(scan, odometry);
+            }
             drift = meter.finish().filter(|&drift| drift > params.matching.max_drift);
             if drift.is_some() {
                 params.matching.rounds = ROUNDS;
@@ -174,36 +194,24 @@ impl ScanLog {
         let side = params.window();
         let robot = Point2::origin();
         // What several views agree on must not depend on how the walls lie in the cells.
-        let corner = Vector2::repeat(if hash(&here.scan) % 2 == 0 { 0.0 } else { 0.5 });
+        let corner = Vector2::repeat(if hash(&here.scan).is_multiple_of(2) { 0.0 } else { 0.5 });
         let mut counts = RayCounts::around(robot, side + 2, params.cell, corner);
-        let (mut viewpoints, mut driven) = (Vec::new(), Vec::new());
+        let on_map = |scan: &LoggedScan| scan.placed(&map_from_log);
         let on_pass = |other: &&LoggedScan| (other.way - here.way).abs() <= params.memory;
-        for other in self.scans.iter().filter(on_pass) {
-            let placed = moved(&map_from_log, &other.pose);
-            counts.add(&other.rays.moved(&from_robot(&placed)));
-            viewpoints.push(Viewpoint::new(&other.scan, &placed));
-            driven.push(Point2::from(placed.position));
+        let mut placed: Vec<PlacedScan> = self.scans.iter().filter(on_pass).map(on_map).collect();
+        for scan in &placed {
+            counts.add(&scan.rays);
         }
         // Passes are compared with what this one shows, and not with each other.
-        let agreeing: Vec<Vec<(&LoggedScan, Odometry, Rays)>> = self
-            .other_passes(here)
-            .into_iter()
-            .map(|pass| {
-                let place = |other: &'_ LoggedScan| {
-                    let placed = moved(&map_from_log, &other.pose);
-                    other.rays.moved(&from_robot(&placed))
-                };
-                pass.into_iter()
-                    .map(|other| (other, moved(&map_from_log, &other.pose), place(other)))
-                    .collect::<Vec<_>>()
-            })
-            .filter(|pass| agrees(pass.iter().map(|(.., rays)| rays), &counts))
-            .collect();
-        for (other, placed, rays) in agreeing.into_iter().flatten() {
-            counts.add(&rays);
-            viewpoints.push(Viewpoint::new(&other.scan, &placed));
-            driven.push(Point2::from(placed.position));
+        let passes = self.other_passes(here).into_iter();
+        let passes = passes.map(|pass| pass.into_iter().map(on_map).collect::<Vec<_>>());
+        let agreeing: Vec<_> = passes.filter(|pass| agrees(pass, &counts)).flatten().collect();
+        for scan in &agreeing {
+            counts.add(&scan.rays);
         }
+        placed.extend(agreeing);
+        let (viewpoints, driven): (Vec<_>, Vec<_>) =
+            placed.into_iter().map(|scan| (scan.viewpoint, scan.robot)).unzip();
         let grid = counts.window(robot, side, params);
         LocalView::new(grid, robot, &viewpoints, &driven, &self.params)
     }
@@ -241,9 +249,9 @@ impl ScanLog {
 }
 
 /// Whether the hits of the scans of a pass lie on the walls of a map.
-fn agrees<'r>(pass: impl Iterator<Item = &'r Rays>, counts: &RayCounts) -> bool {
+fn agrees(pass: &[PlacedScan], counts: &RayCounts) -> bool {
     let (mut known, mut on_wall) = (0, 0);
-    for &hit in pass.flat_map(|rays| &rays.hits) {
+    for &hit in pass.iter().flat_map(|scan| &scan.rays.hits) {
         if let Some(is_wall) = counts.is_near_hit(hit, NEAR_WALL) {
             known += 1;
             on_wall += usize::from(is_wall);

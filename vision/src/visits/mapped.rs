@@ -533,12 +533,12 @@ impl<S: Copy + Default> MappedRule<S> {
         }
         let clockwise = |arm: &PlaceArm| (entry - arm.direction).rem_euclid(TAU);
         arms.sort_by(|one, other| clockwise(one).total_cmp(&clockwise(other)));
+        let off = |arm: &PlaceArm| wrapped(arm.direction - entry).abs();
+        let counted = (0..arms.len()).filter(|&arm| arms[arm].certainty != Certainty::Excluded);
+        let first = counted.min_by(|&one, &other| off(&arms[one]).total_cmp(&off(&arms[other])));
+        arms.rotate_left(first.unwrap_or_default());
         let counted = arms.iter().filter(|arm| arm.certainty != Certainty::Excluded);
         let counted: Vec<f64> = counted.map(|arm| arm.direction).collect();
-        if let Some(first) = nearest_direction(&counted, entry).map(|door| counted[door]) {
-            let first = arms.iter().position(|arm| arm.direction == first).unwrap_or_default();
-            arms.rotate_left(first);
-        }
         let goes_back = exit.is_some_and(|exit| {
             let back = nearest_direction(&counted, entry);
             self.is_same(entry, exit)

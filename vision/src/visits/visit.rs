@@ -144,9 +144,8 @@ impl<S> Visit<S> {
 
     fn is_vertex(&self, arms: &[f64]) -> bool {
         match (arms, self.least_bend) {
-            ([_, _, _, ..], _) => true,
             (&[one, other], Some(least)) => PI - wrapped(one - other).abs() >= least,
-            ([_], Some(_)) => true,
+            ([_, _, _, ..], _) | ([_], Some(_)) => true,
             _ => false,
         }
     }

@@ -108,7 +108,10 @@ impl RobotArguments {
             return ["--sensor laser".to_owned()].into_iter().chain(scanner).collect();
         }
         match look {
-            Some(look) => vec![format!("--look {} --size {}", look.name, self.size.name())],
+            Some(look) => {
+                let [width, height] = self.size.pixels();
+                vec![format!("--look {} --size {width}x{height}", look.name)]
+            }
             None => vec!["--by-scene".to_owned()],
         }
     }
