@@ -18,9 +18,9 @@ use toposlam_model::{
 };
 use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
-    laser::{network_fit::NetworkFit, params::LaserParams, scan_log::ScanLog},
+    laser::{params::LaserParams, scan_log::ScanLog},
     sensing::Sensor,
-    visits::{APPROACH_RANGE, VisitLog, Visits, logged_visits},
+    visits::{APPROACH_RANGE, VisitLog, Visits, logged_visits, network_fit::NetworkFit},
 };
 
 use super::{

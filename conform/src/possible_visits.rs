@@ -13,7 +13,7 @@ use toposlam_model::{
     },
     world::State,
 };
-use toposlam_vision::{laser::network_fit::NetworkFit, visits::VisitPercept};
+use toposlam_vision::visits::{VisitPercept, network_fit::NetworkFit};
 
 use super::{
     config::{ConformConfig, RunDriver},

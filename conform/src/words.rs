@@ -11,7 +11,7 @@ use toposlam_model::{
     percept::{Percept, Sighting},
     trace::{Departure, MatchedChoices, MisfitReason, TraceEventKind},
 };
-use toposlam_vision::laser::network_fit::{NetworkFault, NetworkFit};
+use toposlam_vision::visits::network_fit::{NetworkFault, NetworkFit};
 
 use super::{
     config::RunDriver,

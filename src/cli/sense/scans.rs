@@ -12,11 +12,7 @@ use toposlam_logs::{
 use toposlam_model::enumerate::Watch;
 use toposlam_vision::{
     geometry::from_robot,
-    laser::{
-        pictures,
-        scan::Scan,
-        sensor::{LaserSensor, LocalMap},
-    },
+    laser::{local_map::LocalMap, pictures, scan::Scan, sensor::LaserSensor},
     place::{PlaceSensor, PlaceView, SeenPlace},
 };
 

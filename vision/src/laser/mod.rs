@@ -12,9 +12,9 @@
 //! * `skeleton`: their middle lines, the generalised Voronoi graph;
 //! * `arm_view`: how far one sees along an arm, and beside which walls; `viewpoint`: where no scan looked;
 //! * [`way_graph`]: its meet points and the arms that count, and `junctions`: junctions, corners and dead ends;
-//! * [`sensor`]: all of these steps, live, and [`pictures`] of them;
-//! * [`scan_log`]: the same of a log, by all of its scans;
-//! * [`network_fit`]: whether a building is a network of corridors at all.
+//! * [`local_map`]: all of these steps on one map;
+//! * [`sensor`]: the views of a robot that drives, and [`pictures`] of them;
+//! * [`scan_log`]: the views of a log, by all of its scans.
 //!
 //! [`scene`] is another way, for the small buildings with right angles of Algorithm 2.
 
@@ -26,8 +26,8 @@ pub mod drift;
 mod ends;
 mod grid;
 mod junctions;
+pub mod local_map;
 mod matching;
-pub mod network_fit;
 pub mod params;
 pub mod pictures;
 mod ray_counts;

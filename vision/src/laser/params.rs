@@ -223,8 +223,8 @@ params! {
         doubt: f64 = 0.2,
         /// An arm in doubt matters if it is in so many views of a junction. Logs.
         doubted_views: usize = 2,
-        /// ... and in this part of them. Logs.
-        doubted_part: f64 = 0.3,
+        /// ... and in this part of them: all views of a place show nearly the same. Logs.
+        doubted_part: f64 = 0.65,
         /// A junction that was not seen on this length of the way is forgotten. Geometry: odometry drifts.
         memory: f64 = 30.0,
         /// A robot this near to where it was before goes back. Geometry: less than half of a corridor.

@@ -4,7 +4,7 @@
 use image::{Rgb, RgbImage};
 use nalgebra::Point2;
 
-use super::{ends::WayEnd, grid::Grid, scan::Scan, sensor::LocalMap};
+use super::{ends::WayEnd, grid::Grid, local_map::LocalMap, scan::Scan};
 use crate::{
     annotate::{BODY, CYAN, DARK, GREEN, LegendSign, ORANGE, REACH, RED, StageLegend, WHITE},
     draw::Canvas,

@@ -15,11 +15,11 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use super::{
     drift::{DriftMeter, ROUNDS},
     grid::floor,
+    local_map::{LocalMap, LocalView, is_near_origin, rays},
     matching::ScanMatcher,
     params::{LaserParams, LocalMapParams},
     ray_counts::{RayCounts, Rays},
     scan::Scan,
-    sensor::{LocalMap, LocalView, rays},
     viewpoint::Viewpoint,
 };
 use crate::{
@@ -284,15 +284,6 @@ fn used(scans: &[(Arc<Scan>, Odometry)], params: &LocalMapParams) -> Vec<usize> 
         is_used[index] = !before.chain(after).any(|other| is_used[other]);
     }
     (0..scans.len()).filter(|&index| is_used[index]).collect()
-}
-
-/// Odometry beyond this is wrong, in metres; cells near it would have no place.
-const FARTHEST: f64 = 1e7;
-
-/// Whether the odometry is not more than 10,000 km from its origin.
-pub(super) fn is_near_origin(odometry: &Odometry) -> bool {
-    let pose = odometry.position.into_iter().chain([odometry.heading]);
-    pose.into_iter().all(|number| (-FARTHEST..=FARTHEST).contains(&number))
 }
 
 /// The 64-bit FNV-1a hash of the readings of a scan.

@@ -16,6 +16,7 @@
 
 mod approach;
 mod mapped;
+pub mod network_fit;
 mod tracked_places;
 mod visit;
 mod way;

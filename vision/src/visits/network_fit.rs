@@ -3,8 +3,8 @@
 
 use serde::Serialize;
 
-use super::params::NetworkParams;
-use crate::{place::PlaceView, visits::VisitLog};
+use super::VisitLog;
+use crate::{laser::params::NetworkParams, place::PlaceView};
 
 /// How well a network of corridors describes a building.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

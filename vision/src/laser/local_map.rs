@@ -1,0 +1,137 @@
+//! What a local map shows around the robot: the map, the middle lines of its ways, and the places where they meet; and
+//! the rays of scans that it is made of.
+
+use nalgebra::Point2;
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+
+use super::{
+    clearances::Clearances,
+    grid::Grid,
+    params::{LaserParams, LocalMapParams},
+    ray_counts::Rays,
+    scan::Scan,
+    skeleton::Skeleton,
+    viewpoint::Viewpoint,
+    way_graph::{ArmJudge, CountedArms, WayGraph},
+};
+use crate::{
+    geometry::{distance, from_robot},
+    place::SeenPlace,
+};
+
+/// The local map, and the ways on it.
+#[derive(Clone, Debug)]
+pub struct LocalMap {
+    pub clearances: Clearances,
+    /// The middle lines of its ways; `None` if the robot has no way.
+    pub skeleton: Option<Skeleton>,
+    /// Those that count.
+    pub graph: WayGraph,
+}
+
+/// What a local map shows, on that map.
+#[derive(Clone, Debug)]
+pub(super) struct LocalView {
+    pub map: LocalMap,
+    pub places: Vec<SeenPlace>,
+    /// The same if arms in doubt are arms, too.
+    pub possible_places: Vec<SeenPlace>,
+    /// See [`PlaceView::width`].
+    pub width: Option<f64>,
+}
+
+impl LocalView {
+    /// What a map shows around the robot. It was at the points that were `driven`.
+    pub(super) fn new(
+        mut grid: Grid,
+        robot: Point2<f64>,
+        viewpoints: &[Viewpoint],
+        driven: &[Point2<f64>],
+        params: &LaserParams,
+    ) -> Self {
+        grid.clean(&params.map);
+        let clearances = Clearances::new(grid);
+        let skeleton = Skeleton::new(&clearances, robot, params);
+        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &clearances));
+        let ways = ways.unwrap_or_default();
+        let judge = ArmJudge { map: &clearances, viewpoints, driven, params: &params.arm };
+        let (graph, any_in_doubt) = ways.clone().pruned(&judge, CountedArms::Seen);
+        let places = graph.places(params);
+        let possible_places = if any_in_doubt {
+            ways.pruned(&judge, CountedArms::SeenOrInDoubt).0.places(params)
+        } else {
+            places.clone()
+        };
+        let width =
+            skeleton.as_ref().and_then(|ways| ways.width_at(robot, &clearances, &params.map));
+        Self { map: LocalMap { clearances, skeleton, graph }, places, possible_places, width }
+    }
+}
+
+pub(super) fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
+    let map_from_robot = from_robot(robot);
+    let mut rays = Rays { from: map_from_robot * scan.scanner(), ..Rays::default() };
+    let readings: Vec<(f64, Option<f64>)> = scan.ranges_hit().collect();
+    // Nothing beyond is on the map while the scan is remembered.
+    let farthest = 2.0 * params.reach + params.memory;
+    let point = |bearing: f64, range: f64| map_from_robot * scan.point(bearing, range);
+    let ends: Vec<Option<Point2<f64>>> =
+        readings.iter().map(|&(bearing, range)| Some(point(bearing, range?))).collect();
+    let end = |index: usize| *ends.get(index)?;
+    // The next reading with a return, if those without one in between cover a small angle only.
+    let next = |index: usize| {
+        let (bearing, _) = readings[index];
+        let mut others = (index + 1..readings.len()).chain(0..index);
+        let (at, next, range) =
+            others.find_map(|at| readings[at].1.map(|range| (at, readings[at].0, range)))?;
+        let step = wrapped(next - bearing);
+        let is_near = at == index + 1 || (0.0..=params.max_silence).contains(&step);
+        is_near.then_some((at, step, range))
+    };
+    for (index, &(bearing, range)) in readings.iter().enumerate() {
+        let Some(range) = range else { continue };
+        if range > farthest {
+            rays.between.push(point(bearing, farthest));
+            continue;
+        }
+        rays.hits.push(point(bearing, range));
+        let Some((at, step, other)) = next(index) else { continue };
+        // Rays closer than cells, up to where the map ends.
+        let parts = (step.abs() * params.reach / params.cell).ceil() as u32;
+        for part in 1..parts {
+            let bearing = bearing + step * f64::from(part) / f64::from(parts);
+            rays.between.push(point(bearing, range.min(other).min(farthest)));
+        }
+        if at != index + 1 {
+            continue;
+        }
+        let four = [index.checked_sub(1).and_then(end), end(index), end(index + 1), end(index + 2)];
+        let [Some(before), Some(one), Some(two), Some(after)] = four else { continue };
+        let gap = distance(one, two);
+        let on_line = |line: [Point2<f64>; 2], towards: Point2<f64>, range: f64| {
+            met(rays.from, towards, line)
+                .is_some_and(|met| (met - range).abs() < 0.3 * gap.max(0.3))
+        };
+        let is_straight = on_line([before, one], two, other) || on_line([after, two], one, range);
+        if (params.cell..=params.bridge).contains(&gap) && is_straight {
+            rays.walls.push([one, two]);
+        }
+    }
+    rays
+}
+
+/// The range at which the ray from one point towards another meets the line through two points.
+fn met(from: Point2<f64>, towards: Point2<f64>, [one, other]: [Point2<f64>; 2]) -> Option<f64> {
+    let (ray, line) = ((towards - from).normalize(), other - one);
+    let met = (one - from).perp(&line) / ray.perp(&line);
+    (met.is_finite() && met > 0.0).then_some(met)
+}
+
+/// Odometry beyond this is wrong, in metres; cells near it would have no place.
+const FARTHEST: f64 = 1e7;
+
+/// Whether the odometry is not more than 10,000 km from its origin.
+pub(super) fn is_near_origin(odometry: &Odometry) -> bool {
+    let pose = odometry.position.into_iter().chain([odometry.heading]);
+    pose.into_iter().all(|number| (-FARTHEST..=FARTHEST).contains(&number))
+}
