@@ -22,8 +22,8 @@ fn run(rustc: &mut Command) -> Result<(), String> {
     if status.success() { Ok(()) } else { Err(String::from_utf8(stderr).unwrap()) }
 }
 
-/// The folder of the stand-in, and what cargo made of the model and of serde.
-static DEPENDENCIES: LazyLock<(PathBuf, PathBuf, PathBuf)> = LazyLock::new(|| {
+/// The folder of the stand-in, and what cargo made of the crates that the library uses, with their names.
+static DEPENDENCIES: LazyLock<(PathBuf, [(&str, PathBuf); 3])> = LazyLock::new(|| {
     let folder = scratch("stand_in");
     let crates = [
         ("kani_macros", "macros.rs", "proc-macro", "proc_macro"),
@@ -46,26 +46,27 @@ static DEPENDENCIES: LazyLock<(PathBuf, PathBuf, PathBuf)> = LazyLock::new(|| {
         .unwrap();
     assert!(cargo.status.success(), "{}", String::from_utf8(cargo.stderr).unwrap());
     let messages = String::from_utf8(cargo.stdout).unwrap();
-    let [model, serde] = ["libtoposlam_model-", "libserde-"].map(|name| {
-        let made = |word: &&str| word.contains(name) && word.contains(".rmeta");
-        PathBuf::from(messages.split('"').find(made).expect("cargo says what it made"))
+    let crates = ["toposlam_model", "serde", "thiserror"].map(|name| {
+        let file = format!("/lib{name}-");
+        let made = |word: &&str| word.contains(&file) && word.contains(".rmeta");
+        (name, PathBuf::from(messages.split('"').find(made).expect("cargo says what it made")))
     });
-    (folder, model, serde)
+    (folder, crates)
 });
 
 /// Checks the types of the library in this folder as Kani would have it compiled, and returns its harnesses.
 fn compile(library: &Path, output: &Path) -> Result<BTreeSet<String>, String> {
-    let (stand_in, model, serde) = &*DEPENDENCIES;
-    let others = model.parent().unwrap();
+    let (stand_in, crates) = &*DEPENDENCIES;
+    let others = crates[0].1.parent().unwrap();
+    let externs = crates
+        .iter()
+        .flat_map(|(name, file)| ["--extern".to_owned(), format!("{name}={}", file.display())]);
     run(rustc()
         .args(["--crate-name", "toposlam_proofs", "--crate-type", "lib", "-F", "unsafe_code"])
         .args(["--cfg", "kani", "--check-cfg", "cfg(kani, test)", "--extern", "kani"])
         .arg("-L")
         .arg(stand_in)
-        .arg("--extern")
-        .arg(format!("toposlam_model={}", model.display()))
-        .arg("--extern")
-        .arg(format!("serde={}", serde.display()))
+        .args(externs)
         .arg("-L")
         .arg(format!("dependency={}", others.display()))
         .args(["--emit", "dep-info,metadata", "--out-dir"])
