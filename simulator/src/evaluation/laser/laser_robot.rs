@@ -264,18 +264,25 @@ impl<'w> LaserRobot<'w> {
             }
         }
         let Some((_, mut place)) = closest else { return Ok(LegResult::Driven) };
-        let noticed = self.sensed;
-        if !self.sees_arms {
-            self.see_all_of(&mut place)?;
-            self.side_trips.push(noticed..self.sensed);
+        if self.sees_arms {
+            self.driver.stop_after(self.sensed);
+            let entry = self.came_from(&place);
+            self.go_to(&place)?;
+            return Ok(LegResult::AtPlace(place, entry));
         }
+        let noticed = self.sensed;
+        self.see_all_of(&mut place)?;
         self.driver.stop_after(self.sensed);
+        // It drove past the step that is nearest to the centre, and goes back.
+        let centre = self.plan_from_map() * place.centre;
+        let steps = &self.driver.steps;
+        let off = |&step: &usize| distance(centre, Point2::from(steps[step].pose.position));
+        let nearest_step = nearest(noticed.saturating_sub(1)..steps.len(), off);
+        let past = nearest_step.map_or(noticed, |step| step + 1);
+        self.side_trips.push(past..steps.len());
         let entry = self.came_from(&place);
         self.go_to(&place)?;
-        if !self.sees_arms {
-            // There and back.
-            self.side_trips.push(noticed..self.sensed);
-        }
+        self.side_trips.push(past..self.sensed);
         Ok(LegResult::AtPlace(place, entry))
     }
 
@@ -566,7 +573,10 @@ impl<'w> LaserRobot<'w> {
     /// The direction on the plan from a place to where the robot was before.
     fn came_from(&self, place: &SeenPlace) -> f64 {
         let centre = self.plan_from_map() * place.centre;
-        let far = place.clearance.max(1.0) + ROBOT.came_from;
+        // It may have passed the place at a distance.
+        let last =
+            self.driver.last_without(&self.side_trips).map_or(0.0, |at| distance(at, centre));
+        let far = (place.clearance.max(1.0) + ROBOT.came_from).max(last + 0.1);
         self.driver.before_entering(centre, far, &self.side_trips).map_or_else(
             || self.driver.heading.unwrap_or_default() + PI,
             |point| direction(centre, point),

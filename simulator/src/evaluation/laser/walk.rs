@@ -141,11 +141,20 @@ impl WalkDriver {
         without: &[Range<usize>],
     ) -> Option<Point2<f64>> {
         let is_outside = |place: &Point2<f64>| distance(*place, centre) >= radius;
+        self.places_without(without).skip_while(is_outside).find(is_outside)
+    }
+
+    /// Where it was last, without the steps in these ranges.
+    pub(super) fn last_without(&self, without: &[Range<usize>]) -> Option<Point2<f64>> {
+        self.places_without(without).next()
+    }
+
+    /// Where it was, from the last step to the first, without those in these ranges.
+    fn places_without(&self, without: &[Range<usize>]) -> impl Iterator<Item = Point2<f64>> {
         let counts =
             |&(number, _): &(usize, _)| !without.iter().any(|range| range.contains(&number));
-        let places = self.steps.iter().enumerate().rev().filter(counts);
-        let places = places.map(|(_, step)| step.pose.position.into());
-        places.skip_while(is_outside).find(is_outside)
+        let steps = self.steps.iter().enumerate().rev().filter(counts);
+        steps.map(|(_, step)| step.pose.position.into())
     }
 
     /// Drives to a place, nearly.
