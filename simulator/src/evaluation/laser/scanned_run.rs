@@ -190,6 +190,27 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_robot_that_sees_3_5_m_drives_into_each_way_and_derives_every_percept_rightly() {
+        for name in ["lds-01", "urg-04lx"] {
+            let ScannerParams { field_of_view, angular_step, range, noise, range_noise, .. } =
+                ScannerParams::named(name).unwrap();
+            let scanner = ScannerParams {
+                field_of_view,
+                angular_step,
+                range,
+                noise,
+                range_noise,
+                ..ScannerParams::PLAIN
+            };
+            let sampler = WalkSampler { scanner: Some(scanner), ..sampler(BuildingKind::Mixed, 1) };
+            for run in (0..2).map(|number| sampler.run(number, folding(), &()).unwrap()) {
+                assert_eq!(run.outcome, RobotOutcome::Right, "{name}: {run:?}");
+                assert_eq!((run.tally.percepts, run.tally.wrong), (run.moves + 1, 0), "{run:?}");
+            }
+        }
+    }
+
     /// In this run what the robot derives contradicts itself.
     #[test]
     fn a_robot_that_recovers_ends_right_after_percepts_that_are_wrong() {
