@@ -18,7 +18,7 @@ use toposlam_model::{
 };
 use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
-    laser::{params::LaserParams, scan_log::ScanLog},
+    laser::{params::LaserParams, scan_log::ScanLogBuilder},
     sensing::Sensor,
     visits::{APPROACH_RANGE, VisitLog, Visits, logged_visits, network_fit::NetworkFit},
 };
@@ -220,7 +220,7 @@ pub fn extract(
         last: 0,
         sensors: sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]),
         watch,
-        scans: Vec::new(),
+        scans: LoggedScans { sources: Vec::new(), log: ScanLogBuilder::new(laser) },
         placing: ScanOdometry::default(),
     };
     extraction.read_entries(log, &bound)?;
@@ -251,7 +251,7 @@ pub fn extract(
             infer_events(&run.seen, marked)
         }
         Evidence::Laser => {
-            let (visits, drift, network) = laser_visits(scans, &laser, watch);
+            let (visits, drift, network) = scans.visits(watch);
             let (events, junctions) = visit_events(visits);
             (run.junctions, run.drift, run.network) = (junctions, drift, Some(network));
             events
@@ -260,35 +260,39 @@ pub fn extract(
     Ok(run)
 }
 
-/// The visits of a laser log, and the drift of the heading of its odometry in 10 m, in radians, if its scans are matched
-/// because of it; and whether the building is a network of corridors.
-fn laser_visits(
-    scans: Vec<PlacedScan>,
-    params: &LaserParams,
-    watch: &impl Watch,
-) -> (VisitLog<EventSource>, Option<f64>, NetworkFit) {
-    let mut last = 0;
-    let sources: Vec<EventSource> = scans
-        .iter()
-        .map(|PlacedScan { source, .. }| {
+/// The scans of a log, each with its source.
+struct LoggedScans {
+    sources: Vec<EventSource>,
+    log: ScanLogBuilder,
+}
+
+impl LoggedScans {
+    fn add(&mut self, placed: impl IntoIterator<Item = PlacedScan>) {
+        for PlacedScan { source, scan, odometry, .. } in placed {
             // Scans are in the order of their stamps.
-            last = source.time.max(last);
-            EventSource { time: last, ..*source }
-        })
-        .collect();
-    let log = ScanLog::new(scans.into_iter().map(|placed| (placed.scan, placed.odometry)), *params);
-    let mut views = Vec::with_capacity(log.len());
-    let mut done = 0;
-    while views.len() < log.len() && !watch.stop() {
-        let next = views.len()..log.len().min(views.len() + VIEWS);
-        views.par_extend(next.into_par_iter().map(|view| log.view(view)));
-        let scans = log.scan(views.len() - 1) + 1;
-        watch.part_done((scans - done) as u64);
-        done = scans;
+            let last = self.sources.last().map_or(0, |last| last.time);
+            self.sources.push(EventSource { time: source.time.max(last), ..source });
+            self.log.add(scan, odometry);
+        }
     }
-    let visits = logged_visits(&log, &views, |scan| sources[scan]);
-    let network = NetworkFit::new(&views, &visits, &params.network);
-    (visits, log.drift(), network)
+
+    /// The visits of the log; the drift of the heading of its odometry in 10 m, in radians, if its scans are matched because
+    /// of it; and whether the building is a network of corridors.
+    fn visits(self, watch: &impl Watch) -> (VisitLog<EventSource>, Option<f64>, NetworkFit) {
+        let log = self.log.finish();
+        let mut views = Vec::with_capacity(log.len());
+        let mut done = 0;
+        while views.len() < log.len() {
+            let next = views.len()..log.len().min(views.len() + VIEWS);
+            views.par_extend(next.into_par_iter().map(|view| log.view(view)));
+            let scans = log.scan(views.len() - 1) + 1;
+            watch.part_done((scans - done) as u64);
+            done = scans;
+        }
+        let visits = logged_visits(&log, &views, |scan| self.sources[scan]);
+        let network = NetworkFit::new(&views, &visits, &log.params().network);
+        (visits, log.drift(), network)
+    }
 }
 
 /// Whether an entry shows where the robot was at its time.
@@ -324,7 +328,7 @@ struct Extraction<'w, W> {
     /// One for each thread.
     sensors: Vec<Sensor>,
     watch: &'w W,
-    scans: Vec<PlacedScan>,
+    scans: LoggedScans,
     /// Scans that wait for their odometry.
     placing: ScanOdometry,
 }
@@ -352,7 +356,7 @@ impl<W: Watch> Extraction<'_, W> {
         self.run.remarks = entries.remarks();
         self.run.stamps = self.placing.counts();
         match std::mem::take(&mut self.placing).finish() {
-            Some(waiting) => self.scans.extend(waiting),
+            Some(waiting) => self.scans.add(waiting),
             None if self.run.scans > 0 => {
                 return Err(ExtractError::NoOdometry { scans: self.run.scans });
             }
@@ -395,7 +399,7 @@ impl<W: Watch> Extraction<'_, W> {
         self.recorded.observe(source, &kind);
         match kind {
             EventKind::Odometry(odometry) => {
-                self.scans.extend(self.placing.odometry(stamp, odometry));
+                self.scans.add(self.placing.odometry(stamp, odometry));
                 if matches!(self.run.evidence, Evidence::Scenes | Evidence::Images) {
                     self.scenes.add_odometry(id, stamp, odometry);
                 }
@@ -408,7 +412,7 @@ impl<W: Watch> Extraction<'_, W> {
                 self.run.scan_messages.push(id);
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
                 let placed = PlacedScan { source, stamp, scan, odometry };
-                self.scans.extend(self.placing.scan(placed));
+                self.scans.add(self.placing.scan(placed));
             }
             EventKind::Frame(frame) => {
                 self.waiting.push((source, stamp, frame));

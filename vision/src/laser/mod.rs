@@ -14,7 +14,7 @@
 //! * [`way_graph`]: its meet points and the arms that count, and `junctions`: junctions, corners and dead ends;
 //! * [`local_map`]: all of these steps on one map;
 //! * [`sensor`]: the views of a robot that drives, and [`pictures`] of them;
-//! * [`scan_log`]: the views of a log, by all of its scans.
+//! * [`scan_log`]: the views of a log, by all of its scans, of which `scan_choice` takes some.
 //!
 //! [`scene`] is another way, for the small buildings with right angles of Algorithm 2.
 
@@ -32,6 +32,7 @@ pub mod params;
 pub mod pictures;
 mod ray_counts;
 pub mod scan;
+mod scan_choice;
 pub mod scan_log;
 pub mod scene;
 pub mod sensor;

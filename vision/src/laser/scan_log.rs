@@ -10,16 +10,17 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use nalgebra::{Isometry2, Point2, Vector2};
-use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+use toposlam_model::driving::odometry::Odometry;
 
 use super::{
     drift::{DriftMeter, ROUNDS},
     grid::floor,
-    local_map::{LocalMap, LocalView, is_near_origin, rays},
+    local_map::{LocalMap, LocalView, rays},
     matching::ScanMatcher,
     params::{LaserParams, LocalMapParams},
     ray_counts::{RayCounts, Rays},
     scan::Scan,
+    scan_choice::{ChosenScan, ScanChoice},
     viewpoint::Viewpoint,
 };
 use crate::{
@@ -43,6 +44,7 @@ struct LoggedScan {
     /// Its number among all scans of the log.
     number: usize,
     scan: Arc<Scan>,
+    hash: u64,
     odometry: Odometry,
     /// Where the robot was.
     pose: Odometry,
@@ -81,54 +83,74 @@ const NEAR_WALL: i64 = 2;
 const LEAST_HITS: usize = 200;
 /// The scans of another pass are this far apart at least, in metres. Geometry: half of a corridor.
 const APART: f64 = 0.9;
-/// More scans beside each other are not compared: a robot that stands still takes many.
-const MOST_BESIDE: usize = 2000;
+/// The number of other passes that a map may have: the nearest ones along the way.
+const PASSES: usize = 12;
 
-impl ScanLog {
-    /// The scans of a log in their order, each with the odometry at its time. They are matched with each other if its heading
-    /// drifts by more than [`MatchingParams::max_drift`](super::params::MatchingParams::max_drift).
-    pub fn new(
-        scans: impl IntoIterator<Item = (Arc<Scan>, Odometry)>,
-        mut params: LaserParams,
-    ) -> Self {
-        let all: Vec<(Arc<Scan>, Odometry)> = scans.into_iter().collect();
-        let mut drift = None;
-        if params.matching.rounds == 0 {
-            let mut meter = DriftMeter::new(params);
-            for (scan, odometry) in &all {
-                meter.add_scan(scan, odometry);
-            }
-            drift = meter.finish().filter(|&drift| drift > params.matching.max_drift);
-            if drift.is_some() {
-                params.matching.rounds = ROUNDS;
-            }
+/// Takes the scans of a log. It keeps only those that are used, and the last ones.
+#[derive(Clone, Debug)]
+pub struct ScanLogBuilder {
+    params: LaserParams,
+    meter: DriftMeter,
+    choice: ScanChoice,
+}
+
+impl ScanLogBuilder {
+    pub fn new(params: LaserParams) -> Self {
+        let choice = ScanChoice::new(&params.map);
+        Self { params, meter: DriftMeter::new(params), choice }
+    }
+
+    /// Takes the next scan, and the odometry at its time.
+    pub fn add(&mut self, scan: Arc<Scan>, odometry: Odometry) {
+        if self.params.matching.rounds == 0 {
+            self.meter.add_scan(&scan, &odometry);
         }
-        let mut matcher = ScanMatcher::new(params.matching);
-        let mut log = Self { params, drift, scans: Vec::new(), squares: BTreeMap::new() };
-        let mut way = 0.0;
-        let used = used(&all, &params.map);
+        self.choice.add(scan, odometry);
+    }
+
+    /// The log of all scans. They are matched with each other if the heading of odometry drifts by more than
+    /// [`MatchingParams::max_drift`](super::params::MatchingParams::max_drift).
+    #[must_use]
+    pub fn finish(self) -> ScanLog {
+        let Self { mut params, meter, choice } = self;
+        let drift = meter.finish().filter(|&drift| drift > params.matching.max_drift);
+        if drift.is_some() {
+            params.matching.rounds = ROUNDS;
+        }
+        let chosen = choice.finish();
         // Where scans are matched must not depend on the frame of odometry: the axes are along the walls of the first scan.
-        let first = used.first().filter(|_| params.matching.rounds > 0).map(|&first| &all[first]);
-        let frame = first.map_or_else(Isometry2::identity, |(scan, odometry)| {
-            let heading = odometry.heading + scan.direction_of_walls();
-            from_robot(&Odometry { heading, ..*odometry }).inverse()
-        });
-        for number in used {
-            let (scan, odometry) = &all[number];
-            way += log.scans.last().map_or(0.0, |last| in_steps(last.odometry.distance(odometry)));
-            let placed = moved(&frame, odometry);
-            let pose = matcher.add_scan(scan, &placed, way, way - params.map.memory);
-            log.squares.entry(square(&pose)).or_default().push(log.scans.len());
-            log.scans.push(LoggedScan {
-                number,
-                scan: Arc::clone(scan),
-                odometry: *odometry,
-                pose,
-                way,
-                rays: rays(scan, &Odometry::default(), &params.map),
+        let first = chosen.first().filter(|_| params.matching.rounds > 0);
+        let frame =
+            first.map_or_else(Isometry2::identity, |ChosenScan { scan, odometry, .. }| {
+                let heading = odometry.heading + scan.direction_of_walls();
+                from_robot(&Odometry { heading, ..*odometry }).inverse()
             });
+        let mut matcher = ScanMatcher::new(params.matching);
+        let mut log = ScanLog { params, drift, scans: Vec::new(), squares: BTreeMap::new() };
+        let mut way = 0.0;
+        for ChosenScan { number, scan, odometry, hash } in chosen {
+            way += log.scans.last().map_or(0.0, |last| in_steps(last.odometry.distance(&odometry)));
+            let placed = moved(&frame, &odometry);
+            let pose = matcher.add_scan(&scan, &placed, way, way - params.map.memory);
+            let rays = rays(&scan, &Odometry::default(), &params.map);
+            log.squares.entry(square(&pose)).or_default().push(log.scans.len());
+            log.scans.push(LoggedScan { number, scan, hash, odometry, pose, way, rays });
         }
         log
+    }
+}
+
+impl ScanLog {
+    /// The scans of a log in their order, each with the odometry at its time: see [`ScanLogBuilder`].
+    pub fn new(
+        scans: impl IntoIterator<Item = (Arc<Scan>, Odometry)>,
+        params: LaserParams,
+    ) -> Self {
+        let mut builder = ScanLogBuilder::new(params);
+        for (scan, odometry) in scans {
+            builder.add(scan, odometry);
+        }
+        builder.finish()
     }
 
     pub fn params(&self) -> &LaserParams {
@@ -149,12 +171,12 @@ impl ScanLog {
         self.scans.is_empty()
     }
 
-    /// The number of a view's scan among all scans of the log.
+    /// The number of a view's scan among all scans of the log. The view must exist.
     pub fn scan(&self, view: usize) -> usize {
         self.scans[view].number
     }
 
-    /// What the log shows around the place of a scan.
+    /// What the log shows around the place of a view, which must exist.
     pub fn view(&self, view: usize) -> PlaceView {
         let LoggedScan { scan, odometry, pose, .. } = &self.scans[view];
         let log_from_map = self.log_from_map(view);
@@ -173,7 +195,7 @@ impl ScanLog {
         }
     }
 
-    /// How far one sees around the place of a scan, from a point in a direction and up to a limit, in metres.
+    /// How far one sees around the place of a view, which must exist, from a point in a direction and up to a limit, in metres.
     pub fn sight(&self, view: usize, from: Point2<f64>, direction: f64, limit: f64) -> f64 {
         let map_from_log = self.log_from_map(view).inverse();
         let direction = direction + map_from_log.rotation.angle();
@@ -194,7 +216,7 @@ impl ScanLog {
         let side = params.window();
         let robot = Point2::origin();
         // What several views agree on must not depend on how the walls lie in the cells.
-        let corner = Vector2::repeat(if hash(&here.scan).is_multiple_of(2) { 0.0 } else { 0.5 });
+        let corner = Vector2::repeat(if here.hash.is_multiple_of(2) { 0.0 } else { 0.5 });
         let mut counts = RayCounts::around(robot, side + 2, params.cell, corner);
         let on_map = |scan: &LoggedScan| scan.placed(&map_from_log);
         let on_pass = |other: &&LoggedScan| (other.way - here.way).abs() <= params.memory;
@@ -216,8 +238,8 @@ impl ScanLog {
         LocalView::new(grid, robot, &viewpoints, &driven, &self.params)
     }
 
-    /// The scans of other passes within the reach of a local map: for each pass the scans without those that are close
-    /// behind another one.
+    /// The scans of other passes within the reach of a local map, the nearest pass along the way first: for each pass the
+    /// scans without those that are close behind another one.
     fn other_passes(&self, here: &LoggedScan) -> Vec<Vec<&LoggedScan>> {
         let LocalMapParams { reach, memory, .. } = self.params.map;
         let steps = (reach / SQUARE).ceil() as i64;
@@ -244,7 +266,13 @@ impl ScanLog {
             }
             sparse
         };
-        passes.map(sparse).collect()
+        let mut passes: Vec<Vec<&LoggedScan>> = passes.map(sparse).collect();
+        let away = |pass: &[&LoggedScan]| {
+            pass.iter().map(|scan| (scan.way - here.way).abs()).fold(f64::MAX, f64::min)
+        };
+        passes.sort_by(|one, other| away(one).total_cmp(&away(other)));
+        passes.truncate(PASSES);
+        passes
     }
 }
 
@@ -262,33 +290,4 @@ fn agrees(pass: &[PlacedScan], counts: &RayCounts) -> bool {
 
 fn square(pose: &Odometry) -> [i64; 2] {
     pose.position.map(|at| floor(at / SQUARE))
-}
-
-/// The scans that are used, in their order: none as near to another one as [`LocalMapParams::logged_every`] along the way, and
-/// each other scan that near to one. They are chosen in the order of a hash: which ones are used at a place depends on the
-/// scans around it alone.
-fn used(scans: &[(Arc<Scan>, Odometry)], params: &LocalMapParams) -> Vec<usize> {
-    let is_placed = |index: &usize| is_near_origin(&scans[*index].1);
-    let mut order: Vec<usize> = (0..scans.len()).filter(is_placed).collect();
-    order.sort_by_cached_key(|&index| (hash(&scans[index].0), index));
-    let mut is_used = vec![false; scans.len()];
-    for index in order {
-        let here = &scans[index].1;
-        let is_beside = |other: &usize| {
-            let other = &scans[*other].1;
-            let turned = wrapped(other.heading - here.heading).abs();
-            other.distance(here) < params.logged_every && turned < params.every_turn
-        };
-        let before = (0..index).rev().take(MOST_BESIDE).take_while(is_beside);
-        let after = (index + 1..scans.len()).take(MOST_BESIDE).take_while(is_beside);
-        is_used[index] = !before.chain(after).any(|other| is_used[other]);
-    }
-    (0..scans.len()).filter(|&index| is_used[index]).collect()
-}
-
-/// The 64-bit FNV-1a hash of the readings of a scan.
-fn hash(scan: &Scan) -> u64 {
-    scan.ranges().iter().fold(0xcbf2_9ce4_8422_2325, |hash, range| {
-        (hash ^ u64::from(range.to_bits())).wrapping_mul(0x0100_0000_01b3)
-    })
 }
