@@ -76,7 +76,7 @@ impl LoggedScan {
 const SQUARE: f64 = 8.0;
 /// Another pass agrees with a local map if at least this part of the hits of its scans, where the map is known, lies ...
 /// Logs: of passes that are a metre off along a corridor, less does; people and doors that were opened are the rest.
-const AGREES: f64 = 0.88;
+const AGREES: f64 = 0.85;
 /// ... this near to a wall, in cells.
 const NEAR_WALL: i64 = 2;
 /// With fewer hits where the map is known it is not known whether it agrees.
