@@ -30,6 +30,7 @@ use toposlam_vision::{
         scan::Scan,
         scan_log::ScanLog,
     },
+    place::SeenPlace,
     visits::{VisitPercept, logged_visits},
 };
 
@@ -500,4 +501,48 @@ fn where_a_log_begins_does_not_matter_for_places_that_the_first_scans_do_not_sho
             assert_eq!(far_from_first(&scans[dropped..], first), whole, "{name} without {dropped}");
         }
     }
+}
+
+/// A corridor of 60 m, and a way off it at 14 m that bends after 6 m.
+fn bent_stem() -> CorridorPlan {
+    plan(&[
+        ([0.0, 0.0], [60.0, 0.0], 2.0),
+        ([14.0, 0.0], [14.0, 6.0], 2.0),
+        ([14.0, 6.0], [32.0, 6.0], 2.0),
+    ])
+}
+
+/// The scans of a robot that passes the way off, turns 40 m behind it, comes back and drives into it; on its way back
+/// odometry is so many metres too far along the corridor.
+fn pass_and_come_back(off: f64) -> Vec<PlacedScan> {
+    let way = [[3.0, 0.0], [57.0, 0.0], [14.0, 0.0], [14.0, 6.0], [28.0, 6.0]];
+    let mut scans = drive(360, &bent_stem(), &way, 0.0);
+    let turned = scans.iter().position(|(_, at)| at.position[0] > 56.0).unwrap();
+    for (_, odometry) in &mut scans[turned..] {
+        odometry.position[0] += off;
+    }
+    scans
+}
+
+#[test]
+fn an_arm_that_was_driven_on_a_later_pass_is_certain_if_the_passes_agree() {
+    let first = |off: f64| {
+        let (_, junctions) = inferred(&pass_and_come_back(off), &LaserParams::default());
+        junctions[0].alternatives.clone()
+    };
+    let straight_on = Some(VisitPercept { degree: 3, door: Some(2) });
+    assert_eq!(first(0.0), [straight_on]);
+    assert_eq!(first(0.2), [straight_on], "the walls are blurred");
+    assert_eq!(first(3.0), [None, straight_on], "the way off is elsewhere then");
+}
+
+#[test]
+fn a_log_shows_a_place_before_the_robot_comes_to_it() {
+    let scans = drive(180, &comb(), &[[3.0, 0.0], [57.0, 0.0]], 0.0);
+    let log = ScanLog::new(scans, LaserParams::default());
+    let mut views = (0..log.len()).map(|view| log.view(view));
+    let view = views.find(|view| view.robot.position[0] > 7.0).unwrap();
+    let is_first = |place: &SeenPlace| geometry::distance(place.centre, [14.0, 0.0]) < 1.0;
+    let place = view.places.iter().find(|place| is_first(place)).unwrap();
+    assert_eq!(place.directions().count(), 3);
 }

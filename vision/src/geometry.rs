@@ -77,4 +77,15 @@ mod tests {
         let ahead = from_robot(&pose) * Point2::new(3.0, 0.0);
         assert!(distance(ahead, [1.0, 5.0]) < 1e-12, "{ahead}");
     }
+
+    #[test]
+    fn the_length_of_a_way_in_steps_does_not_depend_on_where_it_begins() {
+        let steps: Vec<f64> =
+            (0..1000).map(|step| in_steps(f64::from(step % 13) * 0.137)).collect();
+        let from = |begin: usize, end: usize| steps[begin..end].iter().sum::<f64>();
+        for begin in [0, 1, 17, 400] {
+            let length = from(begin, 900) - from(begin, 500);
+            assert_eq!(length.to_bits(), from(500, 900).to_bits());
+        }
+    }
 }

@@ -1,7 +1,10 @@
 //! Visits of a laser log that the scans do not decide: what fits, and that nobody is accused on a guess.
 
 use toposlam_model::{embedded_graph::EmbeddedGraph, marker::NoMarker, trace::anywhere};
-use toposlam_vision::visits::VisitPercept;
+use toposlam_vision::visits::{
+    VisitPercept,
+    network_fit::{NetworkFault, NetworkFit},
+};
 
 use super::*;
 use crate::{
@@ -149,4 +152,20 @@ fn without_a_world_a_marker_and_turning_back_any_visits_would_fit() {
     let anything: Seen = (&[], false);
     let found = judged_visits(&[fork, back, fork, anything], None);
     assert_eq!(verdict(&found), (ConformVerdict::Conforms, VisitFit::Fits, &[][..]));
+}
+
+#[test]
+fn the_visits_of_a_building_that_is_no_network_of_corridors_decide_nothing() {
+    let (end, fork): (Seen, Seen) = ((&[Some((1, 0))], true), (&[Some((3, 1))], false));
+    for world in [Some(ring()), None] {
+        let found = judged_visits(&[end, fork], world.as_ref());
+        assert_eq!(found.verdict(), ConformVerdict::Conforms);
+        assert_eq!(found.smallest.is_some(), world.is_none());
+        for fault in [NetworkFault::Wide, NetworkFault::ManyDoors] {
+            let network = NetworkFit { fault: Some(fault), ..NetworkFit::default() };
+            let possible = found.possible.clone().unwrap().in_building(network);
+            let open = found.clone().with_possible(possible);
+            assert_eq!((open.verdict(), open.smallest), (ConformVerdict::NotKnown, None));
+        }
+    }
 }

@@ -222,3 +222,41 @@ fn for_cells(
         (x, y) = (x + east, y + north);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_line_visits_the_cells_on_the_map_on_which_it_has_samples(
+            ends in prop::array::uniform2([-30.0..50.0, -30.0..50.0_f64]),
+            density in 1.0..2.0,
+        ) {
+            const SIDE: usize = 20;
+            let ends = ends.map(Vector2::from);
+            let mut visited = Vec::new();
+            for_cells(SIDE, ends, density, |at| visited.push(at));
+            let off = ends[1] - ends[0];
+            let steps = (density * off.amax()).ceil().max(1.0);
+            let samples = (0..=steps as u32).map(|step| ends[0] + f64::from(step) / steps * off);
+            let cells: Vec<Vector2<f64>> = samples.collect();
+            // At the border of two cells rounding decides.
+            let is_inside = |at: &Vector2<f64>| at.iter().all(|at| (at - at.round()).abs() > 1e-6);
+            for at in cells.iter().filter(|at| is_inside(at)) {
+                if let Some(index) = index_of(SIDE, cell_at(*at)) {
+                    prop_assert!(visited.contains(&index), "{at}");
+                }
+            }
+            for &index in &visited {
+                let middle = Vector2::new((index % SIDE) as f64, (index / SIDE) as f64).add_scalar(0.5);
+                prop_assert!(cells.iter().any(|at| (at - middle).amax() < 0.5 + 1e-6));
+            }
+            let mut once = visited.clone();
+            once.dedup();
+            prop_assert_eq!(once, visited);
+        }
+    }
+}

@@ -415,6 +415,14 @@ mod tests {
             (0..10).map(|metre| Point2::new(19.6, 2.4 + f64::from(metre))).collect();
         assert_eq!(arms(40, &along), [vec![3], vec![3]], "all of it was driven");
         assert_eq!(arms(40, &along[..3]), [none.clone(), vec![3]], "the robot looked into it");
+        // As beside glass, no wall is seen along the way.
+        let mut glass = with_way(70);
+        for row in 23..93 {
+            for column in [124, 136] {
+                glass.cells[row * glass.columns + column] = Cell::Unknown;
+            }
+        }
+        assert_eq!(degrees(&[], CountedArms::Seen, &glass), none, "far, but between no walls");
         let mut closed = with_way(40);
         for column in 125..=135 {
             closed.cells[63 * closed.columns + column] = Cell::Occupied;

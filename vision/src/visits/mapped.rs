@@ -592,18 +592,30 @@ mod tests {
     /// The visits of a robot that comes from the west to a junction at the origin and leaves in a direction, where one view
     /// in `every` shows arms in these directions.
     fn visits(arms: &[f64], leaves: f64, every: usize) -> Vec<Visit<usize>> {
-        let mut rule = MappedRule::new(&LaserParams::default());
-        let mut log = VisitLog::default();
         let come = (0..24).map(|step| Point2::new(-12.0 + 0.5 * f64::from(step), 0.0));
         let leave = (0..24).map(|step| Point2::from(0.5 * f64::from(step) * unit(leaves)));
-        for (at, robot) in come.chain(leave).enumerate() {
-            let arms = arms.iter().map(|&direction| PlaceArm::certain(direction)).collect();
-            let place = SeenPlace { centre: Point2::origin(), clearance: 1.0, arms };
-            let places = if at % every == 0 { vec![place] } else { Vec::new() };
+        let place = place(Point2::origin(), 1.0, arms);
+        visits_by(come.chain(leave).enumerate().map(|(at, robot)| {
+            (robot, if at % every == 0 { vec![place.clone()] } else { Vec::new() }, Vec::new())
+        }))
+    }
+
+    fn place(centre: Point2<f64>, clearance: f64, arms: &[f64]) -> SeenPlace {
+        let arms = arms.iter().map(|&direction| PlaceArm::certain(direction)).collect();
+        SeenPlace { centre, clearance, arms }
+    }
+
+    /// The visits of a robot at these points, where it sees these places, and these if arms in doubt are arms.
+    fn visits_by(
+        views: impl Iterator<Item = (Point2<f64>, Vec<SeenPlace>, Vec<SeenPlace>)>,
+    ) -> Vec<Visit<usize>> {
+        let mut rule = MappedRule::new(&LaserParams::default());
+        let mut log = VisitLog::default();
+        for (at, (robot, places, in_doubt)) in views.enumerate() {
             let view = PlaceView {
                 robot: Odometry { position: robot.into(), heading: 0.0 },
                 odometry_from_map: Isometry2::identity(),
-                possible_places: places.clone(),
+                possible_places: places.iter().cloned().chain(in_doubt).collect(),
                 places,
                 sector: ViewSector::ALL_AROUND,
                 width: None,
@@ -613,6 +625,11 @@ mod tests {
         }
         rule.finish(&mut log);
         log.visits
+    }
+
+    /// A way from the west to the east through the origin, in steps of half a metre.
+    fn eastwards() -> impl Iterator<Item = Point2<f64>> {
+        (-24..24).map(|step| Point2::new(0.5 * f64::from(step), 0.0))
     }
 
     #[test]
@@ -639,5 +656,31 @@ mod tests {
         assert_eq!(went_back(PI), [true]);
         assert_eq!(went_back(beside), [false]);
         assert_eq!(went_back(0.0), [false]);
+    }
+
+    #[test]
+    fn a_robot_that_passes_beside_the_centre_of_a_place_has_not_gone_back() {
+        // Seen from the centre it came from the south and left to the south, 3 m farther on.
+        let lobby = place(Point2::new(0.0, 5.0), 5.15, &[-FRAC_PI_2, FRAC_PI_2, 0.0]);
+        let visits = visits_by(eastwards().map(|robot| (robot, vec![lobby.clone()], Vec::new())));
+        let [visit] = &visits[..] else { panic!("{visits:?}") };
+        assert!(!visit.goes_back);
+        assert_eq!(visit.alternatives(), [], "by which doors it went is not known");
+    }
+
+    #[test]
+    fn a_possible_junction_that_is_noticed_late_was_entered_where_the_robot_came_from() {
+        let fork = place(Point2::origin(), 1.0, &[PI, FRAC_PI_2, 0.0, -FRAC_PI_2]);
+        let late = |robot: Point2<f64>| {
+            let is_noticed = robot.x > 3.0;
+            (robot, Vec::new(), if is_noticed { vec![fork.clone()] } else { Vec::new() })
+        };
+        let visits = visits_by(eastwards().map(late));
+        let [visit] = &visits[..] else { panic!("{visits:?}") };
+        assert!(!visit.goes_back);
+        // It drove two of the arms.
+        assert_eq!(visit.doors(), [PI, 0.0]);
+        let percept = |degree, door| Some(VisitPercept { degree, door: Some(door) });
+        assert_eq!(visit.alternatives(), [None, percept(3, 1), percept(3, 2), percept(4, 2)]);
     }
 }

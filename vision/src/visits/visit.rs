@@ -245,4 +245,16 @@ mod tests {
             assert_eq!(turned(turned_back, doubts), None);
         }
     }
+
+    #[test]
+    fn a_percept_by_whose_doors_a_robot_that_went_through_went_back_is_none() {
+        // Without the possible arm in the north, the arm nearest to where the robot left is the one by which it came in.
+        let left = VisitExit { at: (), direction: 2.2, off: None };
+        let mut through = Visit { exit: Some(left), came: Some(PI), ..visit(None) };
+        through.arms[3].certainty = Certainty::Certain;
+        let percept = |degree, door| Some(VisitPercept { degree, door: Some(door) });
+        assert_eq!(through.alternatives(), [percept(4, 1)]);
+        through.goes_back = true;
+        assert_eq!(through.alternatives(), [percept(3, 0)]);
+    }
 }
