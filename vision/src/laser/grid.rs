@@ -144,9 +144,20 @@ impl Grid {
             }
         }
         self.free(&changed);
-        let limit = (params.small_obstacle / self.cell).ceil() as usize;
-        let small = self.small_obstacles(limit);
-        self.free(&small);
+        let row = (params.row / self.cell).ceil() as usize;
+        let small = (params.small_obstacle / self.cell).ceil() as usize;
+        let gap = params.row_gap / self.cell;
+        // What lies in the shadow of an obstacle is no part of a row.
+        let occupied = self.obstacles(row, |cell| cell == Cell::Occupied);
+        let mut is_in_row = vec![false; self.cells.len()];
+        for obstacle in in_rows(&occupied, gap, row as f64) {
+            obstacle.cells.iter().for_each(|&at| is_in_row[at] = true);
+        }
+        for Obstacle { cells, .. } in self.obstacles(small, |cell| cell != Cell::Free) {
+            if !cells.iter().any(|&at| is_in_row[at]) {
+                self.free(&cells);
+            }
+        }
     }
 
     fn free(&mut self, cells: &[usize]) {
@@ -155,9 +166,9 @@ impl Grid {
         }
     }
 
-    /// The cells of groups that are not free and smaller than this many cells along both axes.
-    fn small_obstacles(&self, limit: usize) -> Vec<usize> {
-        let is_free = |at: usize| self.cells[at] == Cell::Free;
+    /// The groups of neighbouring cells of a kind that are smaller than this many cells along both axes.
+    fn obstacles(&self, limit: usize, is_kind: impl Fn(Cell) -> bool) -> Vec<Obstacle> {
+        let is_free = |at: usize| !is_kind(self.cells[at]);
         let column_row = |at: usize| [at % self.columns, at / self.columns];
         let border = [self.columns - 1, self.rows() - 1];
         let is_border =
@@ -165,7 +176,7 @@ impl Grid {
         // The number of the group, from 1; a large group is left before all of its cells are seen.
         let mut group = vec![0_u32; self.cells.len()];
         let mut large = vec![true];
-        let mut small = Vec::new();
+        let mut obstacles = Vec::new();
         let mut members = Vec::new();
         // The first cell of a row of a group has a free one before it.
         for start in (1..self.cells.len()).filter(|&at| !is_free(at) && is_free(at - 1)) {
@@ -203,9 +214,144 @@ impl Grid {
             };
             large.push(is_large);
             if !is_large {
-                small.extend_from_slice(&members);
+                obstacles.push(Obstacle { cells: members.clone(), low, high });
             }
         }
-        small
+        obstacles
+    }
+}
+
+/// Neighbouring cells in a rectangle, by the columns and rows of its corners.
+struct Obstacle {
+    cells: Vec<usize>,
+    low: [usize; 2],
+    high: [usize; 2],
+}
+
+impl Obstacle {
+    fn middle(&self) -> Point2<f64> {
+        [0, 1].map(|axis| (self.low[axis] + self.high[axis]) as f64 / 2.0).into()
+    }
+
+    /// Its length along a direction.
+    fn along(&self, direction: &Vector2<f64>) -> f64 {
+        let side = |axis: usize| (self.high[axis] - self.low[axis] + 1) as f64;
+        side(0) * direction.x.abs() + side(1) * direction.y.abs()
+    }
+
+    /// The distance between two rectangles.
+    fn gap(&self, other: &Self) -> f64 {
+        let gap = |axis: usize| {
+            let after = |one: &Self, other: &Self| one.low[axis].saturating_sub(other.high[axis]);
+            after(self, other).max(after(other, self)) as f64
+        };
+        gap(0).hypot(gap(1))
+    }
+}
+
+/// Which of these obstacles stand in a straight row at least this long, with gaps that are narrower than this: the mullions of
+/// a glass front, which is a wall. All in cells.
+fn in_rows(obstacles: &[Obstacle], gap: f64, length: f64) -> impl Iterator<Item = &Obstacle> {
+    /// How far an obstacle of a row is off its line: as deep as mullions are.
+    const OFF: f64 = 2.0;
+    /// The part of a row that obstacles fill at least: specks do not.
+    const FILLED: f64 = 0.3;
+    let middles: Vec<Point2<f64>> = obstacles.iter().map(Obstacle::middle).collect();
+    let numbers = 0..obstacles.len();
+    let is_beside =
+        |one: usize, other: usize| one != other && obstacles[one].gap(&obstacles[other]) < gap;
+    let beside: Vec<Vec<usize>> = numbers
+        .clone()
+        .map(|one| numbers.clone().filter(|&other| is_beside(one, other)).collect())
+        .collect();
+    let mut in_rows = vec![false; obstacles.len()];
+    for first in numbers {
+        for &second in &beside[first] {
+            let mut row = vec![first];
+            let mut next = Some(second);
+            while let Some(last) = next {
+                row.push(last);
+                let along = (middles[last] - middles[first]).normalize();
+                let off = |other: usize| middles[other] - middles[last];
+                let goes_on = |&other: &usize| {
+                    off(other).dot(&along) > 0.0 && off(other).perp(&along).abs() <= OFF
+                };
+                let near =
+                    |one: &usize, other: &usize| off(*one).norm().total_cmp(&off(*other).norm());
+                next = beside[last].iter().copied().filter(goes_on).min_by(near);
+            }
+            let along = middles[row[row.len() - 1]] - middles[first];
+            let filled: f64 =
+                row.iter().map(|&number| obstacles[number].along(&along.normalize())).sum();
+            if along.norm() >= length && filled >= FILLED * along.norm() {
+                row.into_iter().for_each(|obstacle| in_rows[obstacle] = true);
+            }
+        }
+    }
+    obstacles.iter().zip(in_rows).filter_map(|(obstacle, is_in_row)| is_in_row.then_some(obstacle))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Free cells with obstacles of so many columns and 3 rows, each so many columns after the one before.
+    fn with_obstacles(number: usize, width: usize, step: usize) -> Grid {
+        let (columns, rows) = (80, 20);
+        let cell = |at: usize| {
+            let [column, row] = [at % columns, at / columns];
+            let is_border = [0, columns - 1].contains(&column) || [0, rows - 1].contains(&row);
+            let (obstacle, within) = (column.wrapping_sub(5) / step, column.wrapping_sub(5) % step);
+            let is_occupied = (9..12).contains(&row) && obstacle < number && within < width;
+            match (is_border, is_occupied) {
+                (true, _) => Cell::Unknown,
+                (_, true) => Cell::Occupied,
+                _ => Cell::Free,
+            }
+        };
+        let cells = (0..columns * rows).map(cell).collect();
+        Grid { columns, cell: 0.15, origin: Point2::origin(), cells }
+    }
+
+    fn occupied(grid: &Grid) -> usize {
+        grid.cells.iter().filter(|&&cell| cell == Cell::Occupied).count()
+    }
+
+    #[test]
+    fn the_mullions_of_a_glass_front_are_a_wall_and_people_and_chairs_are_none() {
+        let left = |number: usize, width: usize, step: usize| {
+            let mut grid = with_obstacles(number, width, step);
+            let before = occupied(&grid);
+            grid.clean(&LocalMapParams::default());
+            (before, occupied(&grid))
+        };
+        assert_eq!(left(10, 2, 5), (60, 60), "mullions each 0.75 m");
+        assert_eq!(left(1, 2, 5), (6, 0), "a person");
+        assert_eq!(left(5, 2, 5), (30, 0), "a row of 3.3 m");
+        assert_eq!(left(10, 1, 5), (30, 0), "specks");
+        assert_eq!(left(7, 3, 10), (63, 0), "pillars with ways of 1.2 m between them");
+    }
+
+    #[test]
+    fn a_row_of_mullions_is_a_wall_in_any_direction() {
+        let mut grid = Grid {
+            cells: vec![Cell::Free; 60 * 60],
+            columns: 60,
+            cell: 0.15,
+            origin: Point2::origin(),
+        };
+        for number in 0..12_usize {
+            let (column, row) = (5 + 4 * number, 10 + 2 * number);
+            for at in [
+                row * 60 + column,
+                row * 60 + column + 1,
+                (row + 1) * 60 + column,
+                (row + 1) * 60 + column + 1,
+            ] {
+                grid.cells[at] = Cell::Occupied;
+            }
+        }
+        grid.clean(&LocalMapParams::default());
+        assert_eq!(occupied(&grid), 12 * 4);
     }
 }

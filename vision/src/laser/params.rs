@@ -111,6 +111,10 @@ params! {
         max_silence: f64 = 0.1,
         /// Obstacles smaller than this along both axes do not divide a way. Geometry: people, chairs.
         small_obstacle: f64 = 1.0,
+        /// Unless they stand in a straight row at least this long, ... Geometry: the mullions of a glass front are a wall.
+        row: f64 = 4.5,
+        /// ... with gaps narrower than this. Geometry: the doors of rooms are wider.
+        row_gap: f64 = 0.9,
         /// A gap narrower than this is no way. Geometry: the doors of rooms.
         min_width: f64 = 1.2,
         /// The robot is at most this far from a way that is wide enough for it. Geometry: half of a corridor.

@@ -77,6 +77,8 @@ const SQUARE: f64 = 8.0;
 /// Another pass agrees with a local map if at least this part of the hits of its scans, where the map is known, lies ...
 /// Logs: of passes that are a metre off along a corridor, less does; people and doors that were opened are the rest.
 const AGREES: f64 = 0.85;
+/// The same where odometry drifts, and passes lie elsewhere. Logs.
+const AGREES_IN_DRIFT: f64 = 0.9;
 /// ... this near to a wall, in cells.
 const NEAR_WALL: i64 = 2;
 /// With fewer hits where the map is known it is not known whether it agrees.
@@ -224,10 +226,12 @@ impl ScanLog {
         for scan in &placed {
             counts.add(&scan.rays);
         }
+        let least = if self.params.matching.rounds > 0 { AGREES_IN_DRIFT } else { AGREES };
         // Passes are compared with what this one shows, and not with each other.
         let passes = self.other_passes(here).into_iter();
         let passes = passes.map(|pass| pass.into_iter().map(on_map).collect::<Vec<_>>());
-        let agreeing: Vec<_> = passes.filter(|pass| agrees(pass, &counts)).flatten().collect();
+        let agreeing: Vec<_> =
+            passes.filter(|pass| agreement(pass, &counts) >= least).flatten().collect();
         for scan in &agreeing {
             counts.add(&scan.rays);
         }
@@ -276,8 +280,8 @@ impl ScanLog {
     }
 }
 
-/// Whether the hits of the scans of a pass lie on the walls of a map.
-fn agrees(pass: &[PlacedScan], counts: &RayCounts) -> bool {
+/// The part of the hits of the scans of a pass that lie on the walls of a map, where it is known.
+fn agreement(pass: &[PlacedScan], counts: &RayCounts) -> f64 {
     let (mut known, mut on_wall) = (0, 0);
     for &hit in pass.iter().flat_map(|scan| &scan.rays.hits) {
         if let Some(is_wall) = counts.is_near_hit(hit, NEAR_WALL) {
@@ -285,7 +289,7 @@ fn agrees(pass: &[PlacedScan], counts: &RayCounts) -> bool {
             on_wall += usize::from(is_wall);
         }
     }
-    known >= LEAST_HITS && on_wall as f64 >= AGREES * known as f64
+    if known < LEAST_HITS { 0.0 } else { on_wall as f64 / known as f64 }
 }
 
 fn square(pose: &Odometry) -> [i64; 2] {
