@@ -193,8 +193,10 @@ impl LogCheck<'_> {
             (error, _) => CheckError::Judge(error),
         })?;
         let judgement = match &extracted {
-            ExtractedRun { evidence: Evidence::Laser, junctions, network, .. } => {
-                let possible = PossibleVisits::judge(&complete, junctions, &config, watch);
+            ExtractedRun { evidence: Evidence::Laser, junctions, proved, network, .. } => {
+                // Whether a corridor bends enough for a corner is no fact.
+                let proved = proved.as_ref().filter(|_| !self.laser.corner.corners);
+                let possible = PossibleVisits::judge(&complete, junctions, proved, &config, watch);
                 judgement.with_possible(possible.in_building(network.unwrap_or_default()))
             }
             ExtractedRun { got_lost: true, .. } => judgement.accusing_nobody(Unproved::Lost),

@@ -112,6 +112,8 @@ pub enum DivergenceCause {
         poses => format!("it fits none of the {poses} candidate poses in the known world"),
     })]
     World(Misfit),
+    #[error("the known world fits no choice of what was driven or seen to end up to here")]
+    Proved,
     #[error("no world of any size explains the log up to here: {why}")]
     NoWorld { event: TraceEvent, why: Impossibility },
     #[error("{}", departed(.0))]
@@ -157,6 +159,7 @@ impl DivergenceCause {
             Self::Measurement { .. } => ("moved", Motion),
             Self::Return { .. } => ("return", Perception),
             Self::Undecided(_) => ("undecided", Perception),
+            Self::Proved => ("proved", Perception),
             Self::World(misfit) => by_kind(&misfit.event, "percept", "no-such-door"),
             Self::NoWorld { event, .. } => by_kind(event, "no-world", "no-world"),
             Self::Algorithm(departure) => by_kind(&departure.event, "contradiction", "door"),
@@ -169,7 +172,7 @@ impl DivergenceCause {
 }
 
 /// The names of all causes.
-pub(super) const NAMES: [&str; 19] = [
+pub(super) const NAMES: [&str; 20] = [
     "not-in-turn",
     "number",
     "form",
@@ -180,6 +183,7 @@ pub(super) const NAMES: [&str; 19] = [
     "shape",
     "return",
     "undecided",
+    "proved",
     "percept",
     "no-such-door",
     "no-world",

@@ -20,7 +20,9 @@ use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
     laser::{params::LaserParams, scan_log::ScanLogBuilder},
     sensing::Sensor,
-    visits::{APPROACH_RANGE, VisitLog, Visits, logged_visits, network_fit::NetworkFit},
+    visits::{
+        APPROACH_RANGE, VisitLog, Visits, logged_visits, network_fit::NetworkFit, proved_visits,
+    },
 };
 
 use super::{
@@ -82,11 +84,20 @@ pub struct ExtractedRun {
     pub network: Option<NetworkFit>,
     /// The junctions of the events that are inferred from laser scans.
     pub junctions: Vec<VisitedJunction>,
+    /// The same visits by what the scans prove; `None` if they prove nothing.
+    pub proved: Option<ProvedVisits>,
     /// The sightings of a marker that is a fiducial.
     pub sightings: Vec<TimedSighting>,
     /// Whether the log records that the robot got lost and went on, which events that are inferred from scenes or images
     /// do not show.
     pub got_lost: bool,
+}
+
+/// Visits by what was driven or is seen to end, with their events.
+#[derive(Clone, Debug, Default)]
+pub struct ProvedVisits {
+    pub(crate) events: Vec<CheckedEvent>,
+    pub(crate) junctions: Vec<VisitedJunction>,
 }
 
 /// The number of messages that were skipped when events were inferred, by the reason.
@@ -251,13 +262,28 @@ pub fn extract(
             infer_events(&run.seen, marked)
         }
         Evidence::Laser => {
-            let (visits, drift, network) = scans.visits(watch);
+            let SensedLog { visits, proved, drift, network } = scans.visits(watch);
             let (events, junctions) = visit_events(visits);
             (run.junctions, run.drift, run.network) = (junctions, drift, Some(network));
+            run.proved = proved.map(|visits| {
+                let (events, junctions) = visit_events(visits);
+                ProvedVisits { events, junctions }
+            });
             events
         }
     };
     Ok(run)
+}
+
+/// What the scans of a log show.
+struct SensedLog {
+    visits: VisitLog<EventSource>,
+    /// The visits by what the scans prove, if they do.
+    proved: Option<VisitLog<EventSource>>,
+    /// The drift of the heading of odometry in 10 m, in radians, if scans are matched because of it.
+    drift: Option<f64>,
+    /// Whether the building is a network of corridors.
+    network: NetworkFit,
 }
 
 /// The scans of a log, each with its source.
@@ -276,9 +302,7 @@ impl LoggedScans {
         }
     }
 
-    /// The visits of the log; the drift of the heading of its odometry in 10 m, in radians, if its scans are matched because
-    /// of it; and whether the building is a network of corridors.
-    fn visits(self, watch: &impl Watch) -> (VisitLog<EventSource>, Option<f64>, NetworkFit) {
+    fn visits(self, watch: &impl Watch) -> SensedLog {
         let log = self.log.finish();
         let mut views = Vec::with_capacity(log.len());
         let mut done = 0;
@@ -290,8 +314,9 @@ impl LoggedScans {
             done = scans;
         }
         let visits = logged_visits(&log, &views, |scan| self.sources[scan]);
+        let proved = proved_visits(&log, &views, |scan| self.sources[scan]);
         let network = NetworkFit::new(&views, &visits, &log.params().network);
-        (visits, log.drift(), network)
+        SensedLog { visits, proved, drift: log.drift(), network }
     }
 }
 

@@ -391,8 +391,17 @@ impl Judgement {
     pub(super) fn with_possible(self, possible: PossibleVisits) -> Self {
         // Without the visits that are not certain, what the others show is no world; nor is a hall.
         let is_certain = self.unrecognised.is_none() && possible.network.fault.is_none();
+        let divergence = possible.refuted.map(|time| {
+            let events = &self.events.events;
+            let event = events.iter().position(|event| event.source.time >= time);
+            let cause = DivergenceCause::Proved;
+            let event = event.unwrap_or(events.len());
+            Divergence { event, fault: cause.fault(), cause }
+        });
         let judgement = self.accusing_nobody(Unproved::Scans);
         Self {
+            contradiction: judgement.contradiction.filter(|_| divergence.is_none()),
+            divergence,
             possible: Some(possible),
             determined: judgement.determined.filter(|_| is_certain),
             smallest: judgement.smallest.filter(|_| is_certain),

@@ -46,7 +46,8 @@ pub use events::{
     CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, SightingError, UndecidedCause,
 };
 pub use extract::{
-    Evidence, ExtractConfig, ExtractError, ExtractedRun, SkippedMessages, extract, infer_events,
+    Evidence, ExtractConfig, ExtractError, ExtractedRun, ProvedVisits, SkippedMessages, extract,
+    infer_events,
 };
 pub use impossible::Impossibility;
 pub use json::LogsLine;

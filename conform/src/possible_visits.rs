@@ -1,7 +1,8 @@
 //! The visits of a laser log, judged as sets of what the scans cannot exclude. Section 2.1.
 //!
-//! That an arm is there, or is not, is a fact if the robot drove it. What scans show beyond that may be wrong in one visit
-//! of many, so it may support that a log conforms, and accuses nobody: a log whose visits fit no world is not known.
+//! That an arm is there is a fact if the robot drove it, and that it is not if a way is seen to end. What scans show beyond
+//! that may be wrong in one visit of many, so it may support that a log conforms, and accuses nobody. A log is accused only if
+//! what is [proved](ProvedVisits) fits no choice in the known world either.
 
 use serde::Serialize;
 use toposlam_model::{
@@ -17,7 +18,8 @@ use toposlam_vision::visits::{VisitPercept, network_fit::NetworkFit};
 
 use super::{
     config::{ConformConfig, RunDriver},
-    events::{CheckedKind, RunEvents, UndecidedCause},
+    events::{CheckedEvent, CheckedKind, RunEvents, UndecidedCause},
+    extract::ProvedVisits,
     known_world::KnownWorld,
     marked_visits::VisitedJunction,
 };
@@ -33,6 +35,9 @@ pub struct PossibleVisits {
     pub fit: VisitFit,
     /// Whether the building is a network of corridors at all.
     pub network: NetworkFit,
+    /// The time of the visit up to which no choice of what is proved fits the known world, in nanoseconds.
+    #[serde(skip)]
+    pub(super) refuted: Option<u64>,
     /// Where the robot may be after the last visit in the known world.
     #[serde(skip)]
     pub(super) states: Vec<State>,
@@ -68,17 +73,18 @@ impl PossibleVisits {
     pub(super) fn judge(
         events: &RunEvents,
         junctions: &[VisitedJunction],
+        proved: Option<&ProvedVisits>,
         config: &ConformConfig,
         watch: &dyn Watch,
     ) -> Self {
         let by_anyone = config.driver == RunDriver::Anyone;
-        let sets = visit_sets(events, junctions, config.marker);
+        let (_, sets): (Vec<_>, Vec<_>) =
+            visit_sets(&events.events, junctions, config.marker).into_iter().unzip();
         let of_junctions: Vec<usize> =
             (0..sets.len()).filter(|&set| sets[set] != VisitSet::turned_back()).collect();
         let certain = of_junctions.iter().filter(|&&set| sets[set].is_certain()).count();
         let mut judged = Self { visits: of_junctions.len(), certain, by_anyone, ..Self::default() };
-        let unseen_way = CheckedKind::Undecided(UndecidedCause::UnseenWay);
-        if events.events.iter().any(|event| event.kind == unseen_way) {
+        if has_unseen_way(&events.events) {
             return Self { fit: VisitFit::UnseenWay, ..judged };
         }
         let is_marked = config.marker.name() == Directional.name();
@@ -88,6 +94,9 @@ impl PossibleVisits {
             judged.states = after.pop().unwrap_or_default();
             let fits = sets.is_empty() || !judged.states.is_empty();
             judged.fit = if fits { VisitFit::Fits } else { VisitFit::Contradiction };
+            if !fits {
+                judged.refuted = proved.and_then(|proved| refuted(proved, known, config.marker));
+            }
             let left = alternatives_left(graph, &config.marker, states, &sets);
             let is_decided = |set: usize| left[set].len() == 1 && !sets[set].is_certain();
             let numbered = of_junctions.iter().enumerate();
@@ -105,8 +114,10 @@ impl PossibleVisits {
         judged
     }
 
+    /// The visits of a building that is no network of corridors prove nothing.
     pub(super) fn in_building(self, network: NetworkFit) -> Self {
-        Self { network, ..self }
+        let refuted = self.refuted.filter(|_| network.fault.is_none());
+        Self { network, refuted, ..self }
     }
 
     /// Whether so many visits are certain that a choice that fits says something.
@@ -132,21 +143,40 @@ impl PossibleVisits {
     }
 }
 
-/// The visits as sets, in order, with the places where the robot turned back between them.
+/// The robot drove where its scanner did not look.
+fn has_unseen_way(events: &[CheckedEvent]) -> bool {
+    let unseen_way = CheckedKind::Undecided(UndecidedCause::UnseenWay);
+    events.iter().any(|event| event.kind == unseen_way)
+}
+
+/// The time of the visit up to which no choice of what is proved fits a world, in nanoseconds.
+fn refuted(proved: &ProvedVisits, known: &KnownWorld, marker: &dyn Marker) -> Option<u64> {
+    let ProvedVisits { events, junctions } = proved;
+    if has_unseen_way(events) {
+        return None;
+    }
+    let (at, sets): (Vec<_>, Vec<_>) = visit_sets(events, junctions, marker).into_iter().unzip();
+    let after = states_after(&known.graph, &marker, &known.states, &sets);
+    let is_misfit = after.last().is_some_and(Vec::is_empty);
+    is_misfit.then(|| events[at[after.len() - 1]].source.time)
+}
+
+/// The visits as sets, in order, with the places where the robot turned back between them; each with the index of its event.
 fn visit_sets(
-    events: &RunEvents,
+    events: &[CheckedEvent],
     junctions: &[VisitedJunction],
     marker: &dyn Marker,
-) -> Vec<VisitSet> {
+) -> Vec<(usize, VisitSet)> {
     let mut sets = Vec::new();
     let mut junctions = junctions.iter().peekable();
-    for (index, event) in events.events.iter().enumerate() {
+    for (index, event) in events.iter().enumerate() {
         match &event.kind {
-            CheckedKind::TurnedBack => sets.push(VisitSet::turned_back()),
+            CheckedKind::TurnedBack => sets.push((index, VisitSet::turned_back())),
             CheckedKind::Arrival { .. } | CheckedKind::Undecided(_) => {
                 let junction = junctions.next_if(|junction| junction.event == index);
                 let sighting = event.arrival().and_then(|arrival| arrival.sighting);
-                sets.extend(junction.map(|junction| visit_set(junction, sighting, marker)));
+                let set = junction.map(|junction| visit_set(junction, sighting, marker));
+                sets.extend(set.map(|set| (index, set)));
             }
             CheckedKind::Door { .. } | CheckedKind::LeftBetweenDoors { .. } => {}
         }

@@ -37,11 +37,22 @@ pub struct PlaceView {
     pub places: Vec<SeenPlace>,
     /// The same if the arms in doubt are arms, too: those that the sensor did not look into.
     pub possible_places: Vec<SeenPlace>,
+    /// What is proved of the places, by a whole log.
+    pub facts: Option<PlaceFacts>,
     pub sector: ViewSector,
     /// The width of the way in which the robot is, between its walls, in metres; `None` by a camera, or if it is in no way.
     pub width: Option<f64>,
     /// What the places are read from, by a camera.
     pub scene: Option<Scene>,
+}
+
+/// What is proved of places: an arm was driven, or a way is seen to end.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlaceFacts {
+    /// The places whose arms were driven.
+    pub driven: Vec<SeenPlace>,
+    /// The same if each way that is not seen to end is an arm.
+    pub not_ended: Vec<SeenPlace>,
 }
 
 /// A place where ways meet: a junction with at least three arms, a corner with two, or a dead end with one.

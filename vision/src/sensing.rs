@@ -62,6 +62,7 @@ impl PlaceSensor for SceneSensor {
             robot: *odometry,
             odometry_from_map: Isometry2::identity(),
             possible_places: places.clone(),
+            facts: None,
             places,
             sector: ViewSector::ALL_AROUND,
             width: None,

@@ -8,7 +8,8 @@ use toposlam_vision::visits::{
 
 use super::*;
 use crate::{
-    PossibleVisits, UndecidedCause, Unproved, VisitFit, VisitedJunction, known_world::KnownWorld,
+    PossibleVisits, UndecidedCause, Unproved, VisitFit, VisitedJunction, extract::ProvedVisits,
+    known_world::KnownWorld,
 };
 
 /// A visit: what the scans cannot exclude, and whether the robot left the way that it came.
@@ -17,8 +18,8 @@ type Seen<'s> = (&'s [Option<(u32, u32)>], bool);
 /// No junction: the robot turned back in the corridor.
 const TURNED_BACK: Seen = (&[None], true);
 
-/// The judgement of visits, in a world without a marker, from any of its darts, or in any world.
-fn judged_visits(visits: &[Seen], world: Option<&EmbeddedGraph>) -> Judgement {
+/// The events of visits, and their junctions.
+fn events_of(visits: &[Seen]) -> (Vec<CheckedKind>, Vec<VisitedJunction>) {
     let mut kinds = Vec::new();
     let mut junctions = Vec::new();
     for &(seen, goes_back) in visits {
@@ -44,11 +45,37 @@ fn judged_visits(visits: &[Seen], world: Option<&EmbeddedGraph>) -> Judgement {
             _ => kinds.push(CheckedKind::Undecided(UndecidedCause::UnseenArm)),
         }
     }
-    let events = bare_events(kinds);
+    (kinds, junctions)
+}
+
+/// The judgement of visits, in a world without a marker, from any of its darts, or in any world.
+fn judged_visits(visits: &[Seen], world: Option<&EmbeddedGraph>) -> Judgement {
+    with_proof(visits, None, world)
+}
+
+/// The same where so much of the visits is proved.
+fn with_proof(
+    visits: &[Seen],
+    proved: Option<&[Seen]>,
+    world: Option<&EmbeddedGraph>,
+) -> Judgement {
+    let (kinds, junctions) = events_of(visits);
+    // Each event is a nanosecond after the one before it.
+    let timed = |kinds| {
+        let mut events = bare_events(kinds);
+        (0..).zip(&mut events.events).for_each(|(time, event)| event.source.time = time);
+        events
+    };
+    let proved = proved.map(|visits| {
+        let (kinds, junctions) = events_of(visits);
+        ProvedVisits { events: timed(kinds).events, junctions }
+    });
+    let events = timed(kinds);
     let states = |graph: &EmbeddedGraph| anywhere(graph, &NoMarker);
     let world = world.map(|graph| KnownWorld { graph: graph.clone(), states: states(graph) });
     let config = ConformConfig { world, marker: &NoMarker, ..by_anyone() };
-    judged(&events, &config).with_possible(PossibleVisits::judge(&events, &junctions, &config, &()))
+    let possible = PossibleVisits::judge(&events, &junctions, proved.as_ref(), &config, &());
+    judged(&events, &config).with_possible(possible)
 }
 
 fn verdict(judgement: &Judgement) -> (ConformVerdict, VisitFit, &[usize]) {
@@ -95,6 +122,33 @@ fn what_scans_show_accuses_nobody() {
 }
 
 #[test]
+fn what_a_robot_drove_accuses_it_in_a_known_world() {
+    let end: Seen = (&[Some((1, 0))], true);
+    let crossing: Seen = (&[Some((4, 1))], false);
+    let (open, anything): (Seen, Seen) = ((&[Some((3, 1)), Some((4, 1))], false), (&[], false));
+    let ring = ring();
+    let refuted = |proved: &[Seen]| {
+        let found = with_proof(&[end, crossing], Some(proved), Some(&ring));
+        let cause = found.divergence.as_ref().map(|found| (found.event, found.cause.name()));
+        assert_eq!(found.contradiction.is_some(), cause.is_none());
+        (found.verdict(), cause)
+    };
+    let diverged = |event| (ConformVerdict::Diverged, Some((event, "proved")));
+    assert_eq!(refuted(&[end, crossing]), diverged(2));
+    assert_eq!(refuted(&[anything, crossing]), diverged(1));
+    for proved in [[end, open], [end, anything], [anything, open]] {
+        assert_eq!(refuted(&proved), (ConformVerdict::NotKnown, None), "{proved:?}");
+    }
+    // What is proved matters only if the visits themselves fit no choice, and if the building is a network of corridors.
+    let found = with_proof(&[end, open], Some(&[end, crossing]), Some(&ring));
+    assert_eq!((found.verdict(), found.divergence), (ConformVerdict::NotKnown, None));
+    let found = with_proof(&[end, crossing], Some(&[end, crossing]), Some(&ring));
+    let network = NetworkFit { fault: Some(NetworkFault::Wide), ..NetworkFit::default() };
+    let possible = found.possible.clone().unwrap().in_building(network);
+    assert_eq!(possible.refuted, None);
+}
+
+#[test]
 fn a_divergence_of_a_robot_that_got_lost_leaves_the_verdict_open() {
     let fork = || bare_arrival(3, Sighting::Nothing);
     let events = bare_events([fork(), bare_door(5)]);
@@ -111,12 +165,11 @@ fn a_way_on_which_the_scanner_did_not_look_leaves_everything_open() {
     let mut found = judged_visits(&[end, fork], Some(&ring()));
     assert_eq!(verdict(&found).1, VisitFit::Fits);
     let mut events = found.events.clone();
-    events.events.push(CheckedEvent {
-        source: EventSource::default(),
-        kind: CheckedKind::Undecided(UndecidedCause::UnseenWay),
-    });
+    let kind = CheckedKind::Undecided(UndecidedCause::UnseenWay);
+    events.events.push(CheckedEvent { kind, ..events.events[0].clone() });
+    events.events.rotate_right(1);
     let config = ConformConfig { marker: &NoMarker, ..by_anyone() };
-    let possible = PossibleVisits::judge(&events, &[], &config, &());
+    let possible = PossibleVisits::judge(&events, &[], None, &config, &());
     assert_eq!((possible.fit, possible.certain), (VisitFit::UnseenWay, 0));
     found = judged(&events, &config).with_possible(possible);
     assert_eq!(verdict(&found).0, ConformVerdict::NotKnown);

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     geometry::{distance, from_robot},
-    place::SeenPlace,
+    place::{PlaceFacts, SeenPlace},
 };
 
 /// The local map, and the ways on it.
@@ -38,6 +38,8 @@ pub(super) struct LocalView {
     pub possible_places: Vec<SeenPlace>,
     /// See [`PlaceView::width`].
     pub width: Option<f64>,
+    /// All ways of the map.
+    ways: WayGraph,
 }
 
 impl LocalView {
@@ -58,13 +60,26 @@ impl LocalView {
         let (graph, any_in_doubt) = ways.clone().pruned(&judge, CountedArms::Seen);
         let places = graph.places(params);
         let possible_places = if any_in_doubt {
-            ways.pruned(&judge, CountedArms::SeenOrInDoubt).0.places(params)
+            ways.clone().pruned(&judge, CountedArms::SeenOrInDoubt).0.places(params)
         } else {
             places.clone()
         };
         let width =
             skeleton.as_ref().and_then(|ways| ways.width_at(robot, &clearances, &params.map));
-        Self { map: LocalMap { clearances, skeleton, graph }, places, possible_places, width }
+        Self { map: LocalMap { clearances, skeleton, graph }, places, possible_places, width, ways }
+    }
+
+    /// What was driven, or seen to end, from these viewpoints and by a robot at the points that were `driven`.
+    pub(super) fn facts(
+        &self,
+        viewpoints: &[Viewpoint],
+        driven: &[Point2<f64>],
+        params: &LaserParams,
+    ) -> PlaceFacts {
+        let judge = ArmJudge { map: &self.map.clearances, viewpoints, driven, params: &params.arm };
+        let [driven, not_ended] = [CountedArms::Driven, CountedArms::NotEnded]
+            .map(|counted| self.ways.clone().pruned(&judge, counted).0.places(params));
+        PlaceFacts { driven, not_ended }
     }
 }
 

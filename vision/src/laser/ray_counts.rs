@@ -36,7 +36,8 @@ impl Rays {
 #[derive(Clone, Debug)]
 pub(super) struct RayCounts {
     side: usize,
-    cell: f64,
+    /// The side of a cell, in metres.
+    pub cell: f64,
     /// The corner with the least coordinates, in metres.
     origin: Point2<f64>,
     hits: Vec<u32>,
@@ -97,7 +98,7 @@ impl RayCounts {
 
     /// Whether a ray ended at most this many cells from a point, along both axes; `None` where no ray was.
     pub(super) fn is_near_hit(&self, point: Point2<f64>, cells: i64) -> Option<bool> {
-        let [column, row] = cell_at(self.place(point));
+        let [column, row] = self.cell_at(point);
         let here = self.index([column, row])?;
         let mut near = (-cells..=cells)
             .flat_map(|x| (-cells..=cells).map(move |y| [column + x, row + y]))
@@ -109,7 +110,7 @@ impl RayCounts {
     /// Whether a window of this many cells a side fits around a point.
     pub(super) fn covers(&self, point: Point2<f64>, window: usize) -> bool {
         let half = (window / 2) as i64;
-        cell_at(self.place(point)).iter().all(|&at| at - half >= 0 && at + half < self.side as i64)
+        self.cell_at(point).iter().all(|&at| at - half >= 0 && at + half < self.side as i64)
     }
 
     /// What is known around a point, in a square of an odd number of cells a side, which must fit; without
@@ -117,7 +118,7 @@ impl RayCounts {
     pub(super) fn window(&self, point: Point2<f64>, side: usize, params: &LocalMapParams) -> Grid {
         let half = (side / 2) as i64;
         // The window without its border.
-        let [west, south] = cell_at(self.place(point)).map(|at| (at - half + 1).max(1) as usize);
+        let [west, south] = self.cell_at(point).map(|at| (at - half + 1).max(1) as usize);
         let inner = side.saturating_sub(2);
         let width = (west + inner).min(self.side - 1) - west;
         let mut all = Vec::with_capacity(inner * width);
@@ -155,6 +156,11 @@ impl RayCounts {
             let part = f64::from(hits) / (f64::from(hits) + f64::from(passes));
             if part >= params.occupied { Cell::Occupied } else { Cell::Free }
         }
+    }
+
+    /// The column and the row of a point, on the map or not.
+    pub(super) fn cell_at(&self, point: Point2<f64>) -> [i64; 2] {
+        cell_at(self.place(point))
     }
 
     /// A point in cells from the corner.

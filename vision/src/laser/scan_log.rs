@@ -7,7 +7,10 @@
 //! * which scans are used is decided in the order of a hash of their readings, not from the first one on;
 //! * the cells of each local map begin at the robot, along the walls that its scan shows.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::odometry::Odometry;
@@ -25,7 +28,7 @@ use super::{
 };
 use crate::{
     geometry::{from_robot, in_steps, motion_between, moved},
-    place::{PlaceView, SeenPlace},
+    place::{PlaceFacts, PlaceView, SeenPlace},
 };
 
 /// All scans of a log that are used. Points are in metres in the frame in which they were placed: that of odometry, or of
@@ -182,7 +185,8 @@ impl ScanLog {
     pub fn view(&self, view: usize) -> PlaceView {
         let LoggedScan { scan, odometry, pose, .. } = &self.scans[view];
         let log_from_map = self.log_from_map(view);
-        let LocalView { places, possible_places, width, .. } = self.local_view(view);
+        let (local, PlaceFacts { driven, not_ended }) = self.local_view(view);
+        let LocalView { places, possible_places, width, .. } = local;
         let on_log = |places: Vec<SeenPlace>| {
             places.into_iter().map(|place| place.moved(&log_from_map)).collect()
         };
@@ -191,6 +195,7 @@ impl ScanLog {
             odometry_from_map: motion_between(pose, odometry),
             places: on_log(places),
             possible_places: on_log(possible_places),
+            facts: Some(PlaceFacts { driven: on_log(driven), not_ended: on_log(not_ended) }),
             sector: scan.sector(),
             width,
             scene: None,
@@ -201,7 +206,7 @@ impl ScanLog {
     pub fn sight(&self, view: usize, from: Point2<f64>, direction: f64, limit: f64) -> f64 {
         let map_from_log = self.log_from_map(view).inverse();
         let direction = direction + map_from_log.rotation.angle();
-        let LocalMap { clearances, .. } = self.local_view(view).map;
+        let LocalMap { clearances, .. } = self.local_view(view).0.map;
         clearances.sight(map_from_log * from, direction, limit).0
     }
 
@@ -211,7 +216,7 @@ impl ScanLog {
         from_robot(&Odometry { heading: pose.heading + scan.direction_of_walls(), ..*pose })
     }
 
-    fn local_view(&self, view: usize) -> LocalView {
+    fn local_view(&self, view: usize) -> (LocalView, PlaceFacts) {
         let params = &self.params.map;
         let here = &self.scans[view];
         let map_from_log = self.log_from_map(view).inverse();
@@ -226,20 +231,29 @@ impl ScanLog {
         for scan in &placed {
             counts.add(&scan.rays);
         }
-        let least = if self.params.matching.rounds > 0 { AGREES_IN_DRIFT } else { AGREES };
         // Passes are compared with what this one shows, and not with each other.
         let passes = self.other_passes(here).into_iter();
         let passes = passes.map(|pass| pass.into_iter().map(on_map).collect::<Vec<_>>());
-        let agreeing: Vec<_> =
-            passes.filter(|pass| agreement(pass, &counts) >= least).flatten().collect();
-        for scan in &agreeing {
-            counts.add(&scan.rays);
-        }
-        placed.extend(agreeing);
-        let (viewpoints, driven): (Vec<_>, Vec<_>) =
-            placed.into_iter().map(|scan| (scan.viewpoint, scan.robot)).unzip();
-        let grid = counts.window(robot, side, params);
-        LocalView::new(grid, robot, &viewpoints, &driven, &self.params)
+        let least = if self.params.matching.rounds > 0 { AGREES_IN_DRIFT } else { AGREES };
+        let compared = passes.map(|pass| (Agreement::new(&pass, &counts), pass));
+        let (sure, unsure): (Vec<_>, Vec<_>) = compared
+            .filter(|(agreement, _)| agreement.part >= least)
+            .partition(|(agreement, _)| agreement.widest < params.min_width);
+        let mut view_with = |passes: Vec<(Agreement, Vec<PlacedScan>)>| {
+            for scan in passes.into_iter().flat_map(|(_, pass)| pass) {
+                counts.add(&scan.rays);
+                placed.push(scan);
+            }
+            let grid = counts.window(robot, side, params);
+            let (viewpoints, driven): (Vec<_>, Vec<_>) =
+                placed.iter().map(|scan| (scan.viewpoint.clone(), scan.robot)).unzip();
+            let local = LocalView::new(grid, robot, &viewpoints, &driven, &self.params);
+            let facts = local.facts(&viewpoints, &driven, &self.params);
+            (local, facts)
+        };
+        // Only passes that lie on each other beyond doubt prove anything.
+        let (local, facts) = view_with(sure);
+        if unsure.is_empty() { (local, facts) } else { (view_with(unsure).0, facts) }
     }
 
     /// The scans of other passes within the reach of a local map, the nearest pass along the way first: for each pass the
@@ -280,16 +294,54 @@ impl ScanLog {
     }
 }
 
-/// The part of the hits of the scans of a pass that lie on the walls of a map, where it is known.
-fn agreement(pass: &[PlacedScan], counts: &RayCounts) -> f64 {
-    let (mut known, mut on_wall) = (0, 0);
-    for &hit in pass.iter().flat_map(|scan| &scan.rays.hits) {
-        if let Some(is_wall) = counts.is_near_hit(hit, NEAR_WALL) {
-            known += 1;
-            on_wall += usize::from(is_wall);
+/// How far another pass agrees with a map.
+struct Agreement {
+    /// The part of the hits of its scans that lie on walls, where the map is known.
+    part: f64,
+    /// The widest wall that it sees in free space, in metres. A pass that lies elsewhere along a corridor sees some where ways
+    /// leave it.
+    widest: f64,
+}
+
+impl Agreement {
+    fn new(pass: &[PlacedScan], counts: &RayCounts) -> Self {
+        let (mut known, mut on_wall) = (0, 0);
+        let mut astray = BTreeSet::new();
+        for &hit in pass.iter().flat_map(|scan| &scan.rays.hits) {
+            if let Some(is_wall) = counts.is_near_hit(hit, NEAR_WALL) {
+                known += 1;
+                on_wall += usize::from(is_wall);
+                if !is_wall {
+                    astray.insert(counts.cell_at(hit));
+                }
+            }
         }
+        let part = if known < LEAST_HITS { 0.0 } else { on_wall as f64 / known as f64 };
+        let widths = groups(astray).into_iter().map(|[width, height]| width.hypot(height));
+        Self { part, widest: counts.cell * widths.fold(0.0, f64::max) }
     }
-    if known < LEAST_HITS { 0.0 } else { on_wall as f64 / known as f64 }
+}
+
+/// The sides of the rectangles around the groups of these cells, in cells. Cells of a group are at most [`NEAR_WALL`] apart.
+fn groups(mut cells: BTreeSet<[i64; 2]>) -> Vec<[f64; 2]> {
+    let mut groups = Vec::new();
+    while let Some(first) = cells.pop_first() {
+        let (mut low, mut high) = (first, first);
+        let mut open = vec![first];
+        while let Some([column, row]) = open.pop() {
+            for near in (-NEAR_WALL..=NEAR_WALL)
+                .flat_map(|x| (-NEAR_WALL..=NEAR_WALL).map(move |y| [column + x, row + y]))
+            {
+                if cells.remove(&near) {
+                    low = [0, 1].map(|axis| low[axis].min(near[axis]));
+                    high = [0, 1].map(|axis| high[axis].max(near[axis]));
+                    open.push(near);
+                }
+            }
+        }
+        groups.push([0, 1].map(|axis| (high[axis] - low[axis] + 1) as f64));
+    }
+    groups
 }
 
 fn square(pose: &Odometry) -> [i64; 2] {

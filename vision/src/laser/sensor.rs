@@ -109,7 +109,7 @@ impl PlaceSensor for LaserSensor {
         let grid = counts.window(position, side, &params);
         let viewpoints = self.viewpoints.make_contiguous();
         let driven: Vec<_> = viewpoints.iter().map(Viewpoint::point).collect();
-        let LocalView { map, places, possible_places, width } =
+        let LocalView { map, places, possible_places, width, .. } =
             LocalView::new(grid, position, viewpoints, &driven, &self.params);
         self.map = Some(map);
         Some(PlaceView {
@@ -117,6 +117,7 @@ impl PlaceSensor for LaserSensor {
             odometry_from_map: (self.matcher.correction() * frame).inverse(),
             places,
             possible_places,
+            facts: None,
             sector: scan.sector(),
             width,
             scene: None,

@@ -46,21 +46,40 @@ pub struct WayGraph {
 /// Which ways from a meet point to an end count as arms of the junction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CountedArms {
-    /// Those that are seen well enough.
+    /// Those that the robot drove.
+    Driven,
+    /// Also those that are seen well enough.
     Seen,
     /// Also those that are in doubt.
     SeenOrInDoubt,
+    /// All that are not seen to end.
+    NotEnded,
 }
 
-/// Whether a way from a meet point to an end is an arm.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Whether a way from a meet point to an end is an arm, by what is known of it: the most comes last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum ArmStatus {
-    /// It is an arm: the robot drove it, or it is seen far enough.
-    Certain,
+    /// It is none: it is seen to end.
+    Ended,
+    /// Too little of it is seen for an arm.
+    Unseen,
     /// It may be one: it is as wide as a corridor, and neither driven nor seen to end.
     InDoubt,
-    /// It is an alcove, or too little of it is seen.
-    None,
+    /// It is one: it is seen far enough, or the robot drove it as far as it is known.
+    Seen,
+    /// It is one: the robot drove it for as long as makes an arm.
+    Driven,
+}
+
+impl CountedArms {
+    fn least(self) -> ArmStatus {
+        match self {
+            Self::Driven => ArmStatus::Driven,
+            Self::Seen => ArmStatus::Seen,
+            Self::SeenOrInDoubt => ArmStatus::InDoubt,
+            Self::NotEnded => ArmStatus::Unseen,
+        }
+    }
 }
 
 /// What the arms of a graph are judged by.
@@ -160,8 +179,7 @@ impl WayGraph {
                 let Some(arm) = self.arm(way, &degrees) else { return false };
                 let status = *known.entry(arm).or_insert_with(|| self.arm_status(way, arm, judge));
                 any_in_doubt |= status == ArmStatus::InDoubt;
-                let is_counted = counted == CountedArms::SeenOrInDoubt;
-                status == ArmStatus::None || status == ArmStatus::InDoubt && !is_counted
+                status < counted.least()
             });
             let Some(&shortest) = shortest else {
                 if self.prune_loop(judge, &mut degrees) {
@@ -170,7 +188,7 @@ impl WayGraph {
                 for way in 0..self.ways.len() {
                     let status = self.arm(way, &degrees).and_then(|arm| known.get(&arm));
                     self.ways[way].is_certain =
-                        status.is_none_or(|&status| status == ArmStatus::Certain);
+                        status.is_none_or(|&status| status >= ArmStatus::Seen);
                 }
                 return (self, any_in_doubt);
             };
@@ -215,22 +233,23 @@ impl WayGraph {
         let ArmJudge { map, viewpoints, params, .. } = *judge;
         let way = self.ways[way].clone().from_node(meet);
         let (leaf, meet) = (&self.nodes[leaf], &self.nodes[meet]);
-        let Some(end) = leaf.end else { return ArmStatus::Certain };
+        let Some(end) = leaf.end else { return ArmStatus::Seen };
         let known = way.length + end.beyond;
+        let is_closed = end.kind == WayEnd::Closed;
         if way.length < meet.clearance + params.min_behind {
-            return ArmStatus::None;
+            return if is_closed { ArmStatus::Ended } else { ArmStatus::Unseen };
         }
         let behind = way.line.iter().position(|(point, _)| {
             distance(*point, meet.point) >= meet.clearance + params.min_behind
         });
         let behind = way.line.get(behind.unwrap_or_default()..).unwrap_or_default();
         let (driven, length) = (judge.driven(behind), length(behind));
-        // The robot drove it for as long as makes an arm, or as far as it is known and not seen to end.
-        let is_driven = driven + meet.clearance + params.min_behind >= params.min_arm
-            || end.kind != WayEnd::Closed
-                && driven >= params.min_possible.max(params.driven_part * length);
-        if is_driven {
-            return ArmStatus::Certain;
+        if driven + meet.clearance + params.min_behind >= params.min_arm {
+            return ArmStatus::Driven;
+        }
+        // The robot drove it as far as it is known.
+        if !is_closed && driven >= params.min_possible.max(params.driven_part * length) {
+            return ArmStatus::Seen;
         }
         let is_between = |(point, _): &&(Point2<f64>, f64)| {
             distance(*point, meet.point) > meet.clearance
@@ -242,20 +261,17 @@ impl WayGraph {
             ArmView::new(&way.line, (meet.point, meet.clearance), map, params.sight);
         let has_walls = less >= params.far_walls || more >= params.far_wall;
         if is_far && has_walls {
-            return ArmStatus::Certain;
+            return ArmStatus::Seen;
         }
-        let is_long = match end.kind {
-            WayEnd::Closed => known + leaf.clearance >= params.min_arm,
-            WayEnd::Open | WayEnd::Unclear => known >= params.min_arm,
-        };
+        let is_long = known + if is_closed { leaf.clearance } else { 0.0 } >= params.min_arm;
         // A hall is wider, and so is what one sees through glass.
         if is_far && (width <= params.max_width || less >= params.far_walls)
             || is_long && width <= params.max_width
         {
             return ArmStatus::InDoubt;
         }
-        if end.kind == WayEnd::Closed {
-            return ArmStatus::None;
+        if is_closed {
+            return if is_long { ArmStatus::Unseen } else { ArmStatus::Ended };
         }
         // As wide as a corridor; through the door of a room one sees more than its width.
         let leads_on = (params.min_width..=params.max_width).contains(&width)
@@ -273,7 +289,7 @@ impl WayGraph {
         if leads_on && known >= params.min_possible || may_lead_on && is_unseen() {
             ArmStatus::InDoubt
         } else {
-            ArmStatus::None
+            ArmStatus::Unseen
         }
     }
 

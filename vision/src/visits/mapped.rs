@@ -616,6 +616,7 @@ mod tests {
                 robot: Odometry { position: robot.into(), heading: 0.0 },
                 odometry_from_map: Isometry2::identity(),
                 possible_places: places.iter().cloned().chain(in_doubt).collect(),
+                facts: None,
                 places,
                 sector: ViewSector::ALL_AROUND,
                 width: None,

@@ -21,7 +21,9 @@ mod tracked_places;
 mod visit;
 mod way;
 
-use toposlam_model::driving::odometry::Odometry;
+use std::borrow::Cow;
+
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 pub use self::{
     approach::APPROACH_RANGE,
@@ -29,8 +31,13 @@ pub use self::{
 };
 use self::{approach::ApproachRule, mapped::MappedRule};
 use crate::{
-    laser::{params::LaserParams, scan_log::ScanLog, sensor::LaserSensor},
-    place::{PlaceSensor, PlaceView, SeenPlace},
+    geometry::distance,
+    laser::{
+        params::{LaserParams, VisitParams},
+        scan_log::ScanLog,
+        sensor::LaserSensor,
+    },
+    place::{Certainty, PlaceSensor, PlaceView, SeenPlace},
     sensing::SceneSensor,
 };
 
@@ -42,11 +49,71 @@ pub fn logged_visits<S: Copy + Default>(
 ) -> VisitLog<S> {
     let mut params = *log.params();
     params.visit.views = params.visit.logged_views;
-    let mut rule = MappedRule::new(&params);
+    visits_in(log, &params, views.iter().map(Cow::Borrowed), at)
+}
+
+/// The same by what the log proves: an arm is certain if it was driven, and possible unless it is seen to end. `None` if
+/// nothing is proved, because odometry drifts: then passes are not compared.
+pub fn proved_visits<S: Copy + Default>(
+    log: &ScanLog,
+    views: &[PlaceView],
+    at: impl Fn(usize) -> S,
+) -> Option<VisitLog<S>> {
+    let mut params = *log.params();
+    if params.matching.rounds > 0 {
+        return None;
+    }
+    // A way is seen to end if no view shows that it may go on.
+    let visit_params = params.visit;
+    params.visit = VisitParams {
+        views: visit_params.logged_views,
+        agree: 0.0,
+        traversed: 0.0,
+        doubt: 0.0,
+        doubted_views: 1,
+        doubted_part: 0.0,
+        ..visit_params
+    };
+    let facts = || views.iter().filter_map(|view| Some((view, view.facts.as_ref()?)));
+    let by_facts = facts().map(|(view, facts)| {
+        let places = facts.not_ended.clone();
+        Cow::Owned(PlaceView { places, possible_places: Vec::new(), ..view.clone() })
+    });
+    let mut visits = visits_in(log, &params, by_facts, at);
+    for visit in &mut visits.visits {
+        let is_here = |place: &&SeenPlace| distance(place.centre, visit.centre) < visit.extent;
+        let driven = || facts().filter_map(|(_, facts)| facts.driven.iter().find(is_here));
+        let most = driven().count().div_ceil(2).max(1);
+        let exit = visit.exit.as_ref().map(|exit| exit.direction);
+        for (number, arm) in visit.arms.iter_mut().enumerate() {
+            let is_same = |other: f64| wrapped(other - arm.direction).abs() < visit_params.same_arm;
+            let views = driven().filter(|place| place.directions().any(is_same)).count();
+            let is_taken = arm.is_certain() && (number == 0 || exit.is_some_and(is_same));
+            let is_driven = is_taken || views >= most;
+            arm.certainty = if is_driven { Certainty::Certain } else { Certainty::Possible };
+        }
+    }
+    // Where a log begins shows nothing of where the robot came from.
+    if let (Some(visit), Some(first)) = (visits.visits.first_mut(), views.first()) {
+        let begins = distance(first.robot.position, visit.centre);
+        if begins < visit.extent + visit_params.beginning {
+            visit.arms.clear();
+        }
+    }
+    Some(visits)
+}
+
+fn visits_in<'v, S: Copy + Default>(
+    log: &ScanLog,
+    params: &LaserParams,
+    views: impl Iterator<Item = Cow<'v, PlaceView>>,
+    at: impl Fn(usize) -> S,
+) -> VisitLog<S> {
+    let mut rule = MappedRule::new(params);
     let mut visits = VisitLog::default();
-    for (number, view) in views.iter().enumerate() {
+    for (number, view) in views.enumerate() {
         let sight = |from, direction, limit| log.sight(number, from, direction, limit);
-        rule.add_view(&mut visits, at(log.scan(number)), view, &sight);
+        rule.add_view(&mut visits, at(log.scan(number)), &view, &sight);
     }
     rule.finish(&mut visits);
     visits

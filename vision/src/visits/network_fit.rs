@@ -68,6 +68,7 @@ mod tests {
             odometry_from_map: Isometry2::identity(),
             places: Vec::new(),
             possible_places: Vec::new(),
+            facts: None,
             sector: ViewSector::ALL_AROUND,
             width: Some(width),
             scene: None,
