@@ -439,10 +439,33 @@ mod tests {
             }
         }
         assert_eq!(degrees(&[], CountedArms::Seen, &glass), none, "far, but between no walls");
+        assert_eq!(degrees(&along, CountedArms::SeenOrInDoubt, &closed_way()), none, "a room");
+    }
+
+    /// A corridor, and a way of 6 m from it that ends.
+    fn closed_way() -> Grid {
         let mut closed = with_way(40);
         for column in 125..=135 {
             closed.cells[63 * closed.columns + column] = Cell::Occupied;
         }
-        assert_eq!(degrees(&along, CountedArms::SeenOrInDoubt, &closed), none, "a room");
+        closed
+    }
+
+    #[test]
+    fn what_was_driven_is_an_arm_and_what_is_seen_to_end_is_none() {
+        let facts = |driven: &[Point2<f64>], grid: &Grid| {
+            [CountedArms::Driven, CountedArms::NotEnded]
+                .map(|counted| degrees(driven, counted, grid))
+        };
+        let none = Vec::<usize>::new();
+        let mut driven: Vec<_> =
+            (1..80).map(|half| Point2::new(f64::from(half) / 2.0, 2.4)).collect();
+        for rows in [12, 40, 70] {
+            assert_eq!(facts(&driven, &with_way(rows)), [none.clone(), vec![3]], "{rows}");
+        }
+        assert_eq!(facts(&driven, &closed_way()), [none.clone(), none.clone()], "a room");
+        driven.extend((0..12).map(|metre| Point2::new(19.6, 2.4 + f64::from(metre))));
+        assert_eq!(facts(&driven, &with_way(70)), [vec![3], vec![3]], "10 m of it were driven");
+        assert_eq!(facts(&driven, &with_way(40))[0], none, "no more than 6 m are known");
     }
 }
