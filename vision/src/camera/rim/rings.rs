@@ -32,7 +32,7 @@ const WIDEST: f64 = 0.12;
 /// bearings of the outer one. Views.
 const LEAST_INNER: f64 = 0.15;
 /// The edges of an inner border are more than this many times those of a usual circle beside it. Views.
-const CLEARLY_MORE: f64 = 2.5;
+const CLEARLY_MORE: f64 = 1.5;
 /// A black ring has less than this part of the mirror's brightness ... Views.
 const BLACK: f64 = 0.3;
 /// ... just inside of its inner border, from this part of its radius on. Views.
