@@ -24,6 +24,14 @@ impl Circle {
         Self { centre: scaled_place(self.centre, factor), radius: self.radius * factor }
     }
 
+    /// The circle between this one, at 0, and another one, at 1.
+    pub(super) fn towards(&self, other: &Self, part: f64) -> Self {
+        Self {
+            centre: self.centre + part * (other.centre - self.centre),
+            radius: self.radius + part * (other.radius - self.radius),
+        }
+    }
+
     /// Whether the circles differ by at most this part of the radius in their centre, and in their radius.
     pub(super) fn is_near(&self, other: &Self, part: f64) -> bool {
         let near = part * self.radius.max(other.radius);

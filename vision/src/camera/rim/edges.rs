@@ -19,7 +19,7 @@ const UNIT_RADIUS: f64 = 450.0;
 pub(super) const BEARINGS: usize = 1440;
 
 /// The places of an arc over which brightness is averaged, along the circle, in units.
-const ARC: [f64; 7] = [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0];
+pub(super) const ARC: [f64; 7] = [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0];
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CircleEdge {

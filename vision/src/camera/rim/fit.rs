@@ -7,6 +7,7 @@ use nalgebra::Point2;
 use super::{
     Rim,
     brightness::Brightness,
+    bulge::Bulge,
     circle::Circle,
     edges::{BEARINGS, CircleEdge, CircleEdges, unit},
 };
@@ -18,6 +19,8 @@ pub(super) const REACH: f64 = 8.0;
 const NEAR: f64 = 1.0;
 /// The least part of the full circle by which what is in the image counts. Views.
 const LEAST_VISIBLE: f64 = 0.14;
+/// The least part of the full circle on which a bulge is seen. Geometry: on an arc, any centre has one that fits.
+const LEAST_BULGING: f64 = 0.6;
 /// The greatest change of centre and radius if a part of what is seen is left out, as a part of the radius. Views.
 pub(super) const CERTAIN: f64 = 0.01;
 /// The number of parts of which each is left out once. Views.
@@ -32,6 +35,7 @@ const SECTORS: usize = 32;
 #[derive(Clone, Debug)]
 pub(super) struct CircleFit {
     pub(super) circle: Circle,
+    pub(super) bulge: Bulge,
     pub(super) edges: Vec<CircleEdge>,
     pub(super) seen: f64,
     /// The share of the full circle that is in the image.
@@ -50,7 +54,7 @@ impl CircleFit {
 
     /// The circle through the edges on this one, and the edges on it.
     pub(super) fn refitted(self, image: &Brightness, reach: f64, every: usize) -> Self {
-        let places = self.places();
+        let places = self.round_places();
         if places.len() < PARTS {
             return self;
         }
@@ -60,12 +64,18 @@ impl CircleFit {
     /// A circle and the edges on it: the steepest ones at most `reach` units from it, on one bearing in `every`.
     pub(super) fn on(image: &Brightness, circle: Circle, reach: f64, every: usize) -> Self {
         let found = CircleEdges::near(image, &circle, reach, every);
-        let near = NEAR * unit(&circle);
-        let on = found.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near);
-        let edges: Vec<CircleEdge> = on.collect();
         let all = (BEARINGS / every) as f64;
+        let bulge = Bulge::of(&circle, &found.edges, reach, LEAST_BULGING * all);
+        let near = NEAR * unit(&circle);
+        let is_on = |edge: &CircleEdge| bulge.off(&circle, edge.at).abs() < near;
+        let edges: Vec<CircleEdge> = found.edges.into_iter().filter(is_on).collect();
         let (seen, visible) = (edges.len() as f64 / all, found.visible as f64 / all);
-        Self { circle, edges, seen, visible }
+        Self { circle, bulge, edges, seen, visible }
+    }
+
+    /// The distance of a point outside of the curve that was fitted; negative inside.
+    pub(super) fn off(&self, at: Point2<f64>) -> f64 {
+        self.bulge.off(&self.circle, at)
     }
 
     /// Whether it can be a mirror: its centre is in the image, and it is neither small nor huge.
@@ -96,7 +106,7 @@ impl CircleFit {
     /// Whether a good part of its edges are on another circle, too.
     pub(super) fn is_part_of(&self, other: &Self) -> bool {
         let near = 1.5 * unit(&other.circle);
-        let common = self.edges.iter().filter(|edge| other.circle.off(edge.at).abs() < near);
+        let common = self.edges.iter().filter(|edge| other.off(edge.at).abs() < near);
         4 * common.count() > self.edges.len()
     }
 
@@ -143,7 +153,7 @@ impl CircleFit {
 
     /// Whether centre and radius stay the same if any part of the edges is left out.
     pub(super) fn is_certain(&self) -> bool {
-        let places = self.places();
+        let places = self.round_places();
         let count = places.len();
         (0..PARTS).all(|part| {
             let (from, to) = (part * count / PARTS, (part + 1) * count / PARTS);
@@ -152,7 +162,13 @@ impl CircleFit {
         })
     }
 
-    pub(super) fn places(&self) -> Vec<Point2<f64>> {
+    /// The edges as they would be without the bulge.
+    fn round_places(&self) -> Vec<Point2<f64>> {
+        let Self { circle, bulge, .. } = self;
+        self.edges.iter().map(|edge| bulge.without(circle, edge.at)).collect()
+    }
+
+    fn places(&self) -> Vec<Point2<f64>> {
         self.edges.iter().map(|edge| edge.at).collect()
     }
 

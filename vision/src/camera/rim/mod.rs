@@ -1,28 +1,36 @@
 //! The mirror's rim in images: a circle with an edge all along it.
 //!
 //! The images are averaged, which leaves little of the scene; the edge may be of either sign. Of a narrow dark ring
-//! around the mirror, the rim is the inner border. Of other circles around one centre, it is not known which one is
-//! the rim. No circle is better than a wrong one: the rim must be seen on enough bearings, no other circle may be seen
-//! about as well, and it must stay the same if any part of it is left out.
+//! around the mirror, and of a black one of any width, the rim is the inner border. Of other circles around one centre,
+//! it is not known which one is the rim. No circle is better than a wrong one: the rim must be seen on enough bearings,
+//! no other circle may be seen about as well, it must stay the same if any part of it is left out, and it must not be
+//! smooth inside, as a holder is.
 //!
 //! Lengths are in pixels. A *unit* is a pixel in a circle of radius 450, and more in a larger one. Brightness is that
 //! of images whose mean is 64.
 
 mod brightness;
+mod bulge;
 mod circle;
 mod edges;
 mod fit;
 mod rings;
+mod roughness;
 mod search;
+
+use std::slice;
 
 use image::GrayImage;
 use nalgebra::Point2;
 use thiserror::Error;
 
 use brightness::Brightness;
+use bulge::Bulge;
 use circle::Circle;
 use edges::{BEARINGS, CircleEdge, CircleEdges, unit};
 use fit::{CERTAIN, CircleFit, EVERY, REACH};
+use rings::InnerBorder;
+use roughness::is_rough_inside;
 
 /// The least part of the full circle that must be seen. Views.
 const LEAST_SEEN: f64 = 0.14;
@@ -84,6 +92,10 @@ pub enum RimDoubt {
         "the best circle and another one around the same centre may be the borders of a holder"
     )]
     Nested,
+    #[error(
+        "just inside of the best circle it is smooth, as a holder is; a mirror shows its surroundings there"
+    )]
+    Smooth,
     #[error("another circle is seen about as well as the best one")]
     Rival,
     #[error(
@@ -103,7 +115,8 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
     let (mut first_doubt, mut named) = (None, Vec::new());
     while !fits.is_empty() {
         let leader = fits.remove(0);
-        match rim(&mean, &leader, &fits, first_doubt.is_some()) {
+        let found = rim(&mean, &leader, &fits, first_doubt.is_some());
+        match found.and_then(|rim| with_surroundings(images, rim)) {
             // In a dark circle that may be the mirror, a disc may be the robot's body.
             Ok(rim) if named.iter().any(|dark: &Circle| dark.off(rim.circle.centre) < 0.0) => {
                 named.push(rim.circle);
@@ -163,20 +176,33 @@ fn rim(
     is_second: bool,
 ) -> Result<CircleFit, (RimDoubt, Vec<Circle>)> {
     let best = CircleFit::fitted(image, leader.circle, 1);
+    if best.seen < LEAST_SEEN || best.share() < LEAST_LEADING {
+        return Err((RimDoubt::NoEdge, vec![best.circle]));
+    }
     let rings = rings::around(image, &best);
-    let (inner, outer) = match &rings[..] {
-        [only] => (rings::inner_border(image, only), only),
-        [inner, outer] if rings::is_dark_ring(image, &inner.circle, &outer.circle) => {
-            (Some(inner.clone()), outer)
+    let held = rings::held(image, &rings);
+    let (inner, outer) = match (&rings[..], held) {
+        ([only], _) => (rings::inner_border(image, only), only),
+        ([inner, outer], _) if rings::is_dark_ring(image, &inner.circle, &outer.circle) => {
+            (Some(InnerBorder { fit: inner.clone(), is_clear: true }), outer)
         }
-        _ => {
+        ([.., inner, outer], Some(held))
+            if inner.circle == held.circle
+                && rings::is_black_between(image, inner, &outer.circle) =>
+        {
+            (Some(InnerBorder { fit: held, is_clear: true }), outer)
+        }
+        (_, held) => {
+            let held = held.map(|ring| ring.circle);
             let mut rings = rings;
             rings.sort_by(|one, other| other.score().total_cmp(&one.score()));
-            return Err((RimDoubt::Nested, rings.iter().map(|ring| ring.circle).collect()));
+            let circles = held.into_iter().chain(rings.iter().map(|ring| ring.circle));
+            return Err((RimDoubt::Nested, circles.collect()));
         }
     };
     let is_ring = inner.is_some();
-    let rim = inner.unwrap_or_else(|| outer.clone());
+    let is_clear = inner.as_ref().is_none_or(|inner| inner.is_clear);
+    let rim = inner.map_or_else(|| outer.clone(), |inner| inner.fit);
     let circles = || vec![rim.circle, outer.circle];
     if rim.falling() < LEAST_FALLS * rim.seen {
         return Err((RimDoubt::Dark, circles()));
@@ -198,7 +224,7 @@ fn rim(
     // The inner border of a ring must be seen as well as any rim: dark furniture has an edge, too.
     // Of a narrow ring, both borders are near enough.
     let is_narrow = rim.circle.is_near(&outer.circle, SAME);
-    if is_ring && !is_narrow && rim.seen < LEAST_SEEN {
+    if is_ring && !is_narrow && (rim.seen < LEAST_SEEN || !is_clear) {
         return Err((RimDoubt::Nested, circles()));
     }
     let is_rival = |fit: &&CircleFit| is_other(fit) && fit.score() > LEAD * best.score();
@@ -216,6 +242,18 @@ fn rim(
     Ok(rim)
 }
 
+/// The rim if some image shows the mirror's surroundings just inside of it; the mean of many images is smooth.
+fn with_surroundings(
+    images: &[GrayImage],
+    rim: CircleFit,
+) -> Result<CircleFit, (RimDoubt, Vec<Circle>)> {
+    let is_rough = |image: &GrayImage| {
+        let image = Brightness::mean(slice::from_ref(image));
+        image.is_ok_and(|image| is_rough_inside(&image, &rim.circle))
+    };
+    if images.iter().any(is_rough) { Ok(rim) } else { Err((RimDoubt::Smooth, vec![rim.circle])) }
+}
+
 /// What is seen of a rim that is given: its centre and its radius, in pixels.
 ///
 /// # Errors
@@ -229,5 +267,5 @@ pub fn given(images: &[GrayImage], centre: Point2<f64>, radius: f64) -> Result<R
     let on = edges.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near.max(1.5));
     let edges: Vec<CircleEdge> = on.collect();
     let seen = edges.len() as f64 / BEARINGS as f64;
-    Ok(CircleFit { circle, edges, seen, visible: 1.0 }.rim())
+    Ok(CircleFit { circle, bulge: Bulge::NONE, edges, seen, visible: 1.0 }.rim())
 }

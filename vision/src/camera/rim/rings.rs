@@ -10,11 +10,12 @@ use super::{
     circle::Circle,
     edges::{BEARINGS, CircleEdges, unit},
     fit::{CircleFit, EVERY},
+    roughness::{is_rough_inside, is_smooth_between},
 };
 use crate::{geometry, least_squares::median};
 
 /// Circles from this to that part of the radius are searched. Geometry: a robot's body in the mirror is smaller.
-const RANGE: [f64; 2] = [0.6, 1.5];
+const RANGE: [f64; 2] = [0.6, 2.5];
 /// The centres differ by at most this part of the radius. Views: rings that a camera sees from the side.
 const OFF_CENTRE: f64 = 0.05;
 /// Edges are searched for up to this many units from a circle: borders of narrow rings are near to each other. Views.
@@ -30,6 +31,14 @@ const WIDEST: f64 = 0.12;
 /// The inner border of a dark ring is seen, with the mirror brighter than the ring, on at least this part of the
 /// bearings of the outer one. Views.
 const LEAST_INNER: f64 = 0.15;
+/// The edges of an inner border are more than this many times those of a usual circle beside it. Views.
+const CLEARLY_MORE: f64 = 1.5;
+/// A black ring has less than this part of the mirror's brightness ... Views.
+const BLACK: f64 = 0.3;
+/// ... just inside of its inner border, from this part of its radius on. Views.
+const FROM: f64 = 0.8;
+/// The least part of that border that is seen. Views.
+const LEAST_SEEN: f64 = 0.75;
 /// Smaller differences of brightness are noise. Views.
 const NOISE: f64 = 6.0;
 
@@ -61,7 +70,8 @@ fn around_centre(image: &Brightness, fit: &CircleFit) -> Vec<CircleFit> {
                 ring = ring.refitted(image, REACH, EVERY);
             }
             let off = distance(&ring.circle.centre, &fit.circle.centre);
-            let is_border = ring.share() >= LEAST_SHARE
+            let is_border = ring.seen >= super::LEAST_SEEN
+                && ring.share() >= LEAST_SHARE
                 && off <= OFF_CENTRE * fit.circle.radius
                 && ring.spread_over(image) >= LEAST_SPREAD;
             is_border.then_some(ring)
@@ -80,25 +90,38 @@ fn around_centre(image: &Brightness, fit: &CircleFit) -> Vec<CircleFit> {
     rings
 }
 
+/// The inner border of a dark ring, and whether its edges are clearly more than those of other circles in between: where
+/// it gets darker towards the rim, there are edges everywhere.
+pub(super) struct InnerBorder {
+    pub(super) fit: CircleFit,
+    pub(super) is_clear: bool,
+}
+
 /// If a circle is the outer border of a dark ring, the inner one.
 ///
 /// Only its radius is fitted: the centre is that of the outer border, which is seen better.
-pub(super) fn inner_border(image: &Brightness, outer: &CircleFit) -> Option<CircleFit> {
+pub(super) fn inner_border(image: &Brightness, outer: &CircleFit) -> Option<InnerBorder> {
     let radius = outer.circle.radius;
     let widths = (1..).map(|step| f64::from(step) * 0.004).take_while(|&part| part <= WIDEST);
-    let inner = widths.filter_map(|part| {
-        let circle = Circle { radius: radius * (1.0 - part), ..outer.circle };
-        let edges = CircleEdges::near(image, &circle, REACH, EVERY).edges;
-        let falls = edges.iter().filter(|edge| edge.fall > 0.0);
-        let radius = circle.radius + median(falls.map(|edge| circle.off(edge.at)))?;
-        let fit = CircleFit::on(image, Circle { radius, ..circle }, REACH, EVERY);
-        let is_inner = outer.circle.radius - radius > 4.0 * unit(&circle)
+    let fits: Vec<CircleFit> = widths
+        .filter_map(|part| {
+            let circle = Circle { radius: radius * (1.0 - part), ..outer.circle };
+            let edges = CircleEdges::near(image, &circle, REACH, EVERY).edges;
+            let falls = edges.iter().filter(|edge| edge.fall > 0.0);
+            let radius = circle.radius + median(falls.map(|edge| circle.off(edge.at)))?;
+            Some(CircleFit::on(image, Circle { radius, ..circle }, REACH, EVERY))
+        })
+        .collect();
+    let usual = median(fits.iter().map(CircleFit::falling))?;
+    let is_inner = |fit: &&CircleFit| {
+        outer.circle.radius - fit.circle.radius > 4.0 * unit(&fit.circle)
             && fit.falling() >= LEAST_INNER * outer.seen
-            && is_dark_between(image, &fit.circle, &outer.circle);
-        is_inner.then_some(fit)
-    });
+            && is_dark_between(image, &fit.circle, &outer.circle)
+    };
+    let inner = fits.iter().filter(is_inner);
     let best = inner.max_by(|one, other| one.seen.total_cmp(&other.seen))?;
-    Some(CircleFit::on(image, best.circle, REACH, 1))
+    let is_clear = best.falling() > CLEARLY_MORE * usual;
+    Some(InnerBorder { fit: CircleFit::on(image, best.circle, REACH, 1), is_clear })
 }
 
 /// Whether circles can be the borders of a narrow dark ring around the mirror.
@@ -110,21 +133,48 @@ pub(super) fn is_dark_ring(image: &Brightness, inner: &Circle, outer: &Circle) -
         && is_dark_between(image, inner, outer)
 }
 
-/// Whether the ring between two circles can be a mirror's dark holder: on most bearings it is equally
-/// dark, and not brighter than what is outside of it.
+/// Whether the ring between two circles can be a mirror's dark holder: it is smooth, and on most bearings not brighter
+/// than what is outside of it.
 fn is_dark_between(image: &Brightness, inner: &Circle, outer: &Circle) -> bool {
-    let (mut rings, mut darker) = (Vec::new(), 0_usize);
-    for bearing in (0..BEARINGS).step_by(EVERY) {
+    let pairs = between(image, [inner, outer], [0.5, 1.5]);
+    let darker = pairs.iter().filter(|[ring, outside]| *ring < outside + NOISE).count();
+    darker as f64 > 0.75 * pairs.len() as f64 && is_smooth_between(image, inner, outer)
+}
+
+/// Of circles around one centre, the one in which the mirror shows its surroundings, with nothing but smooth rings
+/// around it.
+pub(super) fn held(image: &Brightness, rings: &[CircleFit]) -> Option<CircleFit> {
+    let is_smooth =
+        |pair: &&[CircleFit]| is_smooth_between(image, &pair[0].circle, &pair[1].circle);
+    let smooth = rings.windows(2).rev().take_while(is_smooth).count();
+    let held = rings.iter().rev().nth(smooth);
+    held.filter(|ring| smooth > 0 && is_rough_inside(image, &ring.circle)).cloned()
+}
+
+/// Whether the smooth ring between two circles is black, so that it is no part of what a mirror shows.
+pub(super) fn is_black_between(image: &Brightness, inner: &CircleFit, outer: &Circle) -> bool {
+    let inside = Circle { radius: FROM * inner.circle.radius, ..inner.circle };
+    let level = |circles, part| median(between(image, circles, [part]).into_iter().flatten());
+    let [ring, mirror] = [level([&inner.circle, outer], 0.5), level([&inside, &inner.circle], 0.5)];
+    let is_black = |(ring, mirror): (f64, f64)| ring < BLACK * mirror;
+    inner.share() > LEAST_SEEN && ring.zip(mirror).is_some_and(is_black)
+}
+
+/// The brightness at parts of the way from one circle to another, on the bearings on which all of them are in the image.
+fn between<const N: usize>(
+    image: &Brightness,
+    [from, to]: [&Circle; 2],
+    parts: [f64; N],
+) -> Vec<[f64; N]> {
+    let bearings = (0..BEARINGS).step_by(EVERY);
+    let samples = bearings.filter_map(|bearing| {
         let towards = geometry::unit(TAU * bearing as f64 / BEARINGS as f64);
-        let [from, to] = [inner, outer].map(|circle| circle.centre + circle.radius * towards);
-        let samples = [0.5, 1.5].map(|part| image.at(from + part * (to - from)));
-        if let [Some(ring), Some(outside)] = samples {
-            rings.push(ring);
-            darker += usize::from(ring < outside + NOISE);
-        }
-    }
-    let median = median(rings.iter().copied()).unwrap_or_default();
-    let even = |ring: &&f64| (**ring - median).abs() < NOISE + 0.25 * median;
-    let most = |count: usize| count as f64 > 0.75 * rings.len() as f64;
-    most(darker) && most(rings.iter().filter(even).count())
+        let light = |part: f64| {
+            let circle = from.towards(to, part);
+            image.at(circle.centre + circle.radius * towards)
+        };
+        let lights = parts.map(light);
+        lights.iter().all(Option::is_some).then(|| lights.map(Option::unwrap_or_default))
+    });
+    samples.collect()
 }

@@ -105,8 +105,13 @@ impl Slopes {
         let most = (0.65 * self.width.max(self.height) as f32) as usize;
         let mut scored = [(); KINDS].map(|()| Vec::new());
         let mut rings = vec![[0.0_f32; 2]; most + 3];
-        for v in (self.height / 6..=self.height - self.height / 6).step_by(2) {
-            for u in (self.width / 6..=self.width - self.width / 6).step_by(2) {
+        let is_middle = |at: usize, side: usize| (side / 6..=side - side / 6).contains(&at);
+        for v in (0..self.height).step_by(2) {
+            for u in (0..self.width).step_by(2) {
+                // The image's border cuts off up to half of a mirror, but not two halves.
+                if !is_middle(u, self.width) && !is_middle(v, self.height) {
+                    continue;
+                }
                 let centre = [u as f32, v as f32];
                 rings.fill([0.0; 2]);
                 for (at, fall, [steep, present]) in &edges {
