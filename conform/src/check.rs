@@ -20,7 +20,7 @@ use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 use super::{
     config::{ConformConfig, RunDriver},
     extract::{Evidence, ExtractConfig, ExtractError, ExtractedRun, extract},
-    judgement::{JudgeError, Judgement, Unproved, judge},
+    judgement::{JudgeError, Judgement, judge},
     known_world::{Known, KnownWorld, MarkerStart},
     log_head::{LogHead, MarkerNotShown},
     marked_visits::{AddedMarker, MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
@@ -197,7 +197,7 @@ impl LogCheck<'_> {
                 let possible = PossibleVisits::judge(&complete, junctions, &config, watch);
                 judgement.with_possible(possible.in_building(network.unwrap_or_default()))
             }
-            ExtractedRun { got_lost: true, .. } => judgement.accusing_nobody(Unproved::Lost),
+            ExtractedRun { unproved: Some(why), .. } => judgement.accusing_nobody(*why),
             _ => judgement,
         };
         let twin = TwinWorld::find(&judgement, &config);

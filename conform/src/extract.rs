@@ -26,6 +26,7 @@ use toposlam_vision::{
 use super::{
     RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, UndecidedCause},
+    judgement::Unproved,
     marked_visits::{TimedSighting, VisitedJunction},
     message_clock::MessageClock,
     placed_scenes::{PlacedScenes, SceneClockError, SensedScene},
@@ -84,9 +85,9 @@ pub struct ExtractedRun {
     pub junctions: Vec<VisitedJunction>,
     /// The sightings of a marker that is a fiducial.
     pub sightings: Vec<TimedSighting>,
-    /// Whether the log records that the robot got lost and went on, which events that are inferred from scenes or images
-    /// do not show.
-    pub got_lost: bool,
+    /// Why events that are inferred from scenes or images accuse nobody: the log records that the robot recovered, which
+    /// they do not show.
+    pub unproved: Option<Unproved>,
 }
 
 /// The number of messages that were skipped when events were inferred, by the reason.
@@ -203,7 +204,7 @@ pub fn extract(
     watch: &impl Watch,
 ) -> Result<ExtractedRun, ExtractError> {
     let ExtractConfig { evidence, sensor, marked, laser } = *config;
-    // Only the recorded events show that a robot got lost.
+    // Only the recorded events show that a robot recovered.
     let recorded: &[Role] = match evidence {
         Evidence::Scenes | Evidence::Images => &[Role::Percept, Role::Door],
         Evidence::Recorded | Evidence::Laser => &[],
@@ -247,7 +248,7 @@ pub fn extract(
     run.events.events = match evidence {
         Evidence::Recorded => run.events.events,
         Evidence::Scenes | Evidence::Images => {
-            run.got_lost = run.events.trace().is_ok_and(|trace| !trace.lost().is_empty());
+            run.unproved = Unproved::after_recovery(&run.events);
             infer_events(&run.seen, marked)
         }
         Evidence::Laser => {

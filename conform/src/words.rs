@@ -268,6 +268,9 @@ fn unproved(divergence: &UnprovedDivergence) -> String {
         Unproved::Lost => {
             "the log records that the robot got lost, which inferred events do not show"
         }
+        Unproved::Obstacle => {
+            "the log records that the robot turned back at an obstacle, which inferred events do not show"
+        }
     };
     format!("event {number} does not fit: {found}; {cause}. This accuses nobody: {why}")
 }
