@@ -193,9 +193,13 @@ impl LogCheck<'_> {
             (error, _) => CheckError::Judge(error),
         })?;
         let judgement = match &extracted {
-            ExtractedRun { evidence: Evidence::Laser, junctions, network, .. } => {
-                let possible = PossibleVisits::judge(&complete, junctions, &config, watch);
-                judgement.with_possible(possible.in_building(network.unwrap_or_default()))
+            ExtractedRun {
+                evidence: Evidence::Laser, junctions, network, matched_scans, ..
+            } => {
+                let possible = PossibleVisits::judge(&complete, junctions, &config, watch)
+                    .in_building(network.unwrap_or_default())
+                    .by_scans(*matched_scans);
+                judgement.with_possible(possible)
             }
             ExtractedRun { unproved: Some(why), .. } => judgement.accusing_nobody(*why),
             _ => judgement,

@@ -31,6 +31,7 @@ use super::{
     message_clock::MessageClock,
     placed_scenes::{PlacedScenes, SceneClockError, SensedScene},
     scan_odometry::{PlacedScan, ScanOdometry, StampCounts},
+    scan_track::{MatchedScans, ScanTrack, UnmatchedScan},
     visit_events::visit_events,
 };
 
@@ -75,6 +76,8 @@ pub struct ExtractedRun {
     /// What was repaired in the messages.
     pub remarks: Vec<ReadingRemark>,
     pub stamps: StampCounts,
+    /// How scans were placed, if the log has no odometry.
+    pub matched_scans: Option<MatchedScans>,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
@@ -106,15 +109,15 @@ pub enum ExtractError {
     #[error(transparent)]
     TopicMap(#[from] DocumentError),
     #[error(
-        "no topics are known for percepts and doors, nor for scenes, images or laser scans with \
-         odometry"
+        "no topics are known for percepts and doors, nor for scenes or images with odometry, nor for laser scans"
     )]
     NothingMapped,
     /// Images must be sensed without a calibration or colours.
     #[error("its events must be inferred from its images: this needs --calibration and --colours")]
     NoSensor,
-    #[error("no odometry is recorded with its {scans} laser scans")]
-    NoOdometry { scans: u64 },
+    /// The log has no odometry, and its scans do not show where the robot was.
+    #[error(transparent)]
+    Unmatched(#[from] UnmatchedScan),
     /// An image is not of the calibrated camera.
     #[error("message {message}: {cause}")]
     Size { message: u64, cause: SensingError },
@@ -163,7 +166,9 @@ impl Evidence {
 
     /// The roles without which there are no events.
     pub fn needs(self) -> &'static [Role] {
-        self.roles().get(..2).unwrap_or_default()
+        // Without odometry scans are placed by themselves.
+        let count = if self == Self::Laser { 1 } else { 2 };
+        self.roles().get(..count).unwrap_or_default()
     }
 
     /// Its name as a value of `--events`.
@@ -174,7 +179,7 @@ impl Evidence {
         }
     }
 
-    /// The roles that it needs, two of them, and what it uses besides.
+    /// The roles that it needs, and what it uses besides.
     fn roles(self) -> &'static [Role] {
         match self {
             Self::Recorded => &[Role::Percept, Role::Door, Role::Odometry],
@@ -213,8 +218,8 @@ pub fn extract(
     let bound = mapping.only(asked).bind(log)?;
     let threads = rayon::current_num_threads();
     let events = RunEvents { truncated: log.truncation().is_some(), ..RunEvents::default() };
-    let mut extraction = Extraction {
-        run: ExtractedRun { events, evidence, ..ExtractedRun::default() },
+    let extraction = |placing| Extraction {
+        run: ExtractedRun { events: events.clone(), evidence, ..ExtractedRun::default() },
         recorded: RecordedEvents::default(),
         scenes: PlacedScenes::default(),
         waiting: Vec::new(),
@@ -222,10 +227,14 @@ pub fn extract(
         sensors: sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]),
         watch,
         scans: LoggedScans { sources: Vec::new(), log: ScanLogBuilder::new(laser) },
-        placing: ScanOdometry::default(),
+        placing,
     };
-    extraction.read_entries(log, &bound)?;
-    let Extraction { mut run, recorded, scenes, scans, .. } = extraction;
+    let mut read = extraction(Placing::Odometry(ScanOdometry::default()));
+    if read.read_entries(log, &bound)? == HasOdometry::No {
+        read = extraction(Placing::Scans(Box::new(ScanTrack::new(&laser.matching))));
+        read.read_entries(log, &bound)?;
+    }
+    let Extraction { mut run, recorded, scenes, scans, .. } = read;
     run.scans -= run.skipped.scans_without_odometry;
     let (seen, off_clock) = scenes.finish()?;
     run.seen = seen;
@@ -239,6 +248,10 @@ pub fn extract(
             }
             Evidence::Laser => MeasurementNoise::UNKNOWN,
         };
+    }
+    if run.matched_scans.is_some() {
+        // The way along a corridor is as the robot drove before.
+        run.events.measurement_noise = MeasurementNoise::UNKNOWN;
     }
     if evidence == Evidence::Laser && run.events.end.is_some() {
         // Corners and dead ends are no visits: the recorded moves and map are those of another graph.
@@ -330,12 +343,30 @@ struct Extraction<'w, W> {
     sensors: Vec<Sensor>,
     watch: &'w W,
     scans: LoggedScans,
-    /// Scans that wait for their odometry.
-    placing: ScanOdometry,
+    placing: Placing,
+}
+
+/// How scans are placed.
+enum Placing {
+    /// Scans wait for their odometry.
+    Odometry(ScanOdometry),
+    /// By the walls of earlier scans: the log has no odometry.
+    Scans(Box<ScanTrack>),
+}
+
+/// Whether a log that has scans has odometry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum HasOdometry {
+    No,
+    Yes,
 }
 
 impl<W: Watch> Extraction<'_, W> {
-    fn read_entries(&mut self, log: &Log, bound: &BoundTopicMap) -> Result<(), ExtractError> {
+    fn read_entries(
+        &mut self,
+        log: &Log,
+        bound: &BoundTopicMap,
+    ) -> Result<HasOdometry, ExtractError> {
         let mut clock = MessageClock::default();
         let mut entries = log.entries(bound);
         for entry in entries.by_ref() {
@@ -352,18 +383,26 @@ impl<W: Watch> Extraction<'_, W> {
         let (rest, off_clock) = clock.finish();
         rest.into_iter().try_for_each(|entry| self.add_entry(entry))?;
         self.look()?;
-        let scans_without_odometry = self.placing.without_odometry();
-        self.run.skipped = SkippedMessages { off_clock, scans_without_odometry };
+        self.run.skipped.off_clock = off_clock;
         self.run.remarks = entries.remarks();
-        self.run.stamps = self.placing.counts();
-        match std::mem::take(&mut self.placing).finish() {
-            Some(waiting) => self.scans.add(waiting),
-            None if self.run.scans > 0 => {
-                return Err(ExtractError::NoOdometry { scans: self.run.scans });
+        let empty = Placing::Odometry(ScanOdometry::default());
+        match std::mem::replace(&mut self.placing, empty) {
+            Placing::Odometry(placing) => {
+                self.run.skipped.scans_without_odometry = placing.without_odometry();
+                self.run.stamps = placing.counts();
+                match placing.finish() {
+                    Some(waiting) => self.scans.add(waiting),
+                    None if self.run.scans > 0 => return Ok(HasOdometry::No),
+                    None => {}
+                }
             }
-            None => {}
+            Placing::Scans(track) => {
+                let (waiting, matched) = track.finish()?;
+                self.scans.add(waiting);
+                self.run.matched_scans = Some(matched);
+            }
         }
-        Ok(())
+        Ok(HasOdometry::Yes)
     }
 
     fn add_entry(&mut self, entry: Entry) -> Result<(), ExtractError> {
@@ -400,7 +439,9 @@ impl<W: Watch> Extraction<'_, W> {
         self.recorded.observe(source, &kind);
         match kind {
             EventKind::Odometry(odometry) => {
-                self.scans.add(self.placing.odometry(stamp, odometry));
+                if let Placing::Odometry(placing) = &mut self.placing {
+                    self.scans.add(placing.odometry(stamp, odometry));
+                }
                 if matches!(self.run.evidence, Evidence::Scenes | Evidence::Images) {
                     self.scenes.add_odometry(id, stamp, odometry);
                 }
@@ -413,7 +454,10 @@ impl<W: Watch> Extraction<'_, W> {
                 self.run.scan_messages.push(id);
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
                 let placed = PlacedScan { source, stamp, scan, odometry };
-                self.scans.add(self.placing.scan(placed));
+                self.scans.add(match &mut self.placing {
+                    Placing::Odometry(placing) => placing.scan(placed),
+                    Placing::Scans(track) => track.scan(placed)?,
+                });
             }
             EventKind::Frame(frame) => {
                 self.waiting.push((source, stamp, frame));

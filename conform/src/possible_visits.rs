@@ -20,6 +20,7 @@ use super::{
     events::{CheckedKind, RunEvents, UndecidedCause},
     known_world::KnownWorld,
     marked_visits::VisitedJunction,
+    scan_track::MatchedScans,
 };
 
 /// The visits of a log, and whether some choice of their percepts fits.
@@ -33,6 +34,9 @@ pub struct PossibleVisits {
     pub fit: VisitFit,
     /// Whether the building is a network of corridors at all.
     pub network: NetworkFit,
+    /// Whether the log has no odometry, and scans too far apart to show where the robot drove.
+    #[serde(skip)]
+    are_scans_far_apart: bool,
     /// Where the robot may be after the last visit in the known world.
     #[serde(skip)]
     pub(super) states: Vec<State>,
@@ -109,6 +113,11 @@ impl PossibleVisits {
         Self { network, ..self }
     }
 
+    pub(super) fn by_scans(self, matched: Option<MatchedScans>) -> Self {
+        let are_scans_far_apart = matched.is_some_and(|matched| matched.are_far_apart());
+        Self { are_scans_far_apart, ..self }
+    }
+
     /// Whether so many visits are certain that a choice that fits says something.
     pub fn is_certain_enough(&self) -> bool {
         let [least, of] = CERTAIN_PART;
@@ -119,6 +128,7 @@ impl PossibleVisits {
     /// would.
     pub(super) fn says_nothing(&self) -> bool {
         self.network.fault.is_some()
+            || self.are_scans_far_apart
             || self.fit == VisitFit::Contradiction
             || self.by_anyone && self.fit == VisitFit::Anything
     }
@@ -127,6 +137,7 @@ impl PossibleVisits {
     pub(super) fn conform(&self) -> bool {
         self.by_anyone
             && self.network.fault.is_none()
+            && !self.are_scans_far_apart
             && self.fit == VisitFit::Fits
             && self.is_certain_enough()
     }

@@ -3,7 +3,6 @@
 use std::{io::Write, path::Path};
 
 use serde::Serialize;
-use toposlam_conform::Evidence;
 use toposlam_logs::{
     entries::Content,
     record::{EventKind, Frame},
@@ -77,7 +76,7 @@ impl SenseArguments {
             Some(file) => TopicMap::read(&input::read(file)?)
                 .map_err(|error| CliError::in_file(file, error))?,
         };
-        if !Evidence::Laser.is_in(&topics) {
+        if topics.carrier(Role::Scan).is_none() || topics.carrier(Role::Odometry).is_none() {
             return Err(wrong(&"this is no image, and no log with laser scans and odometry"));
         }
         let bound = topics.only(&[Role::Scan, Role::Odometry]).bind(&log);
