@@ -1,6 +1,8 @@
 //! Extracts the events of a log: recorded ones, or else those that are inferred from its scenes, images or
 //! laser scans and its odometry. Sections 3 to 6.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
@@ -14,11 +16,14 @@ use toposlam_logs::{
     topic_map::{BoundTopicMap, Role, TopicMap},
 };
 use toposlam_model::{
-    enumerate::Watch, format::document::DocumentError, measurement::MeasurementNoise,
+    driving::odometry::Odometry, enumerate::Watch, format::document::DocumentError,
+    measurement::MeasurementNoise,
 };
 use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
+    geometry::moved,
     laser::{params::LaserParams, scan_log::ScanLogBuilder},
+    place::{PlaceArm, PlaceView},
     sensing::Sensor,
     visits::{APPROACH_RANGE, VisitLog, Visits, logged_visits, network_fit::NetworkFit},
 };
@@ -86,6 +91,12 @@ pub struct ExtractedRun {
     pub network: Option<NetworkFit>,
     /// The junctions of the events that are inferred from laser scans.
     pub junctions: Vec<VisitedJunction>,
+    /// The arms that are seen at each of them, clockwise from the entry door.
+    pub arms: Vec<Vec<PlaceArm>>,
+    /// Where free space is wider than a corridor, in metres in the frame of odometry.
+    pub wide: Vec<[f64; 2]>,
+    /// Where each scan was taken, by its message, if the log has no odometry.
+    pub poses: BTreeMap<EventId, Odometry>,
     /// The sightings of a marker that is a fiducial.
     pub sightings: Vec<TimedSighting>,
     /// Why events that are inferred from scenes or images accuse nobody: the log records that the robot recovered, which
@@ -226,7 +237,11 @@ pub fn extract(
         last: 0,
         sensors: sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]),
         watch,
-        scans: LoggedScans { sources: Vec::new(), log: ScanLogBuilder::new(laser) },
+        scans: LoggedScans {
+            sources: Vec::new(),
+            poses: BTreeMap::new(),
+            log: ScanLogBuilder::new(laser),
+        },
         placing,
     };
     let mut read = extraction(Placing::Odometry(ScanOdometry::default()));
@@ -265,9 +280,14 @@ pub fn extract(
             infer_events(&run.seen, marked)
         }
         Evidence::Laser => {
-            let (visits, drift, network) = scans.visits(watch);
+            if run.matched_scans.is_some() {
+                run.poses.clone_from(&scans.poses);
+            }
+            let ScannedVisits { visits, drift, network, wide } = scans.visits(watch);
+            run.arms = visits.visits.iter().map(|visit| visit.arms.clone()).collect();
             let (events, junctions) = visit_events(visits);
-            (run.junctions, run.drift, run.network) = (junctions, drift, Some(network));
+            (run.junctions, run.drift, run.network, run.wide) =
+                (junctions, drift, Some(network), wide);
             events
         }
     };
@@ -277,7 +297,18 @@ pub fn extract(
 /// The scans of a log, each with its source.
 struct LoggedScans {
     sources: Vec<EventSource>,
+    poses: BTreeMap<EventId, Odometry>,
     log: ScanLogBuilder,
+}
+
+/// What the scans of a log show.
+struct ScannedVisits {
+    visits: VisitLog<EventSource>,
+    /// The drift of the heading of the odometry in 10 m, in radians, if the scans are matched because of it.
+    drift: Option<f64>,
+    network: NetworkFit,
+    /// Where free space is wider than a corridor.
+    wide: Vec<[f64; 2]>,
 }
 
 impl LoggedScans {
@@ -286,13 +317,12 @@ impl LoggedScans {
             // Scans are in the order of their stamps.
             let last = self.sources.last().map_or(0, |last| last.time);
             self.sources.push(EventSource { time: source.time.max(last), ..source });
+            self.poses.insert(source.id, odometry);
             self.log.add(scan, odometry);
         }
     }
 
-    /// The visits of the log; the drift of the heading of its odometry in 10 m, in radians, if its scans are matched because
-    /// of it; and whether the building is a network of corridors.
-    fn visits(self, watch: &impl Watch) -> (VisitLog<EventSource>, Option<f64>, NetworkFit) {
+    fn visits(self, watch: &impl Watch) -> ScannedVisits {
         let log = self.log.finish();
         let mut views = Vec::with_capacity(log.len());
         let mut done = 0;
@@ -304,8 +334,12 @@ impl LoggedScans {
             done = scans;
         }
         let visits = logged_visits(&log, &views, |scan| self.sources[scan]);
-        let network = NetworkFit::new(&views, &visits, &log.params().network);
-        (visits, log.drift(), network)
+        let params = &log.params().network;
+        let network = NetworkFit::new(&views, &visits, params);
+        let is_wide = |view: &&PlaceView| view.width.is_some_and(|width| width > params.widest);
+        let place = |view: &PlaceView| moved(&view.odometry_from_map, &view.robot).position;
+        let wide = views.iter().filter(is_wide).map(place).collect();
+        ScannedVisits { visits, drift: log.drift(), network, wide }
     }
 }
 

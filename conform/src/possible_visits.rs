@@ -76,9 +76,7 @@ impl PossibleVisits {
         watch: &dyn Watch,
     ) -> Self {
         let by_anyone = config.driver == RunDriver::Anyone;
-        let sets = visit_sets(events, junctions, config.marker);
-        let of_junctions: Vec<usize> =
-            (0..sets.len()).filter(|&set| sets[set] != VisitSet::turned_back()).collect();
+        let (sets, of_junctions) = visit_sets(events, junctions, config.marker);
         let certain = of_junctions.iter().filter(|&&set| sets[set].is_certain()).count();
         let mut judged = Self { visits: of_junctions.len(), certain, by_anyone, ..Self::default() };
         let unseen_way = CheckedKind::Undecided(UndecidedCause::UnseenWay);
@@ -143,13 +141,13 @@ impl PossibleVisits {
     }
 }
 
-/// The visits as sets, in order, with the places where the robot turned back between them.
+/// The visits as sets, in order, with the places where the robot turned back between them; and the indices of the visits.
 fn visit_sets(
     events: &RunEvents,
     junctions: &[VisitedJunction],
     marker: &dyn Marker,
-) -> Vec<VisitSet> {
-    let mut sets = Vec::new();
+) -> (Vec<VisitSet>, Vec<usize>) {
+    let (mut sets, mut visits) = (Vec::new(), Vec::new());
     let mut junctions = junctions.iter().peekable();
     for (index, event) in events.events.iter().enumerate() {
         match &event.kind {
@@ -157,12 +155,15 @@ fn visit_sets(
             CheckedKind::Arrival { .. } | CheckedKind::Undecided(_) => {
                 let junction = junctions.next_if(|junction| junction.event == index);
                 let sighting = event.arrival().and_then(|arrival| arrival.sighting);
-                sets.extend(junction.map(|junction| visit_set(junction, sighting, marker)));
+                if let Some(junction) = junction {
+                    visits.push(sets.len());
+                    sets.push(visit_set(junction, sighting, marker));
+                }
             }
             CheckedKind::Door { .. } | CheckedKind::LeftBetweenDoors { .. } => {}
         }
     }
-    sets
+    (sets, visits)
 }
 
 fn visit_set(
