@@ -131,7 +131,8 @@ const NUMBER: f64 = 11.0;
 const SMALL: f64 = 8.0;
 /// The dashes of what is only possible.
 const DASHED: &str = " stroke-dasharray=\"3 2\"";
-/// Visits of junctions with centres nearer than this, in metres, and with the same doors are drawn as one.
+/// Visits of junctions with centres nearer than this, in metres, are drawn as one: certain ones with as many doors, and those
+/// of which several percepts are possible, with the doors of the first.
 const SAME: f64 = 3.0;
 const WALL: &str = "#9aa1ab";
 /// The colour and the radius of the dots where free space is wider than a corridor.
@@ -200,10 +201,9 @@ fn places(visits: &[DrawnVisit]) -> Vec<VisitedPlace<'_>> {
         let [x, y] = visit.centre;
         let is_here = |place: &&mut VisitedPlace| {
             let [u, v] = place.visit.centre;
-            (x - u).hypot(y - v) < SAME
-                && place.visit.doors.len() == visit.doors.len()
-                && place.visit.possible.len() == visit.possible.len()
-                && place.visit.is_certain == visit.is_certain
+            let is_same = place.visit.is_certain == visit.is_certain
+                && (!visit.is_certain || place.visit.doors.len() == visit.doors.len());
+            (x - u).hypot(y - v) < SAME && is_same
         };
         let exit = visit.exit;
         match places.iter_mut().find(is_here) {
@@ -407,7 +407,7 @@ mod tests {
             visits: vec![
                 visit([10.0, 0.0], Some(FRAC_PI_2)),
                 visit([10.5, 0.5], Some(0.1)),
-                DrawnVisit { doors: Vec::new(), is_certain: false, ..visit([15.0, 0.0], None) },
+                DrawnVisit { doors: Vec::new(), is_certain: false, ..visit([14.0, 0.0], None) },
                 DrawnVisit {
                     doors: vec![PI, 0.0],
                     possible: vec![FRAC_PI_2],
