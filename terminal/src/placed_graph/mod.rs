@@ -237,7 +237,7 @@ mod tests {
             let world = graph.world().unwrap().unwrap();
             assert_eq!(world.graph, expected.graph);
             assert_eq!(world.vertex_names, expected.vertex_names);
-            assert_eq!(world.positions.unwrap()[2], [1.0, 9.0]);
+            assert_eq!(world.positions.map(|at| at[2].map(|part| part as i32)), Some([1, 9]));
         }
     }
 
