@@ -20,7 +20,7 @@ use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 use super::{
     config::{ConformConfig, RunDriver},
     extract::{Evidence, ExtractConfig, ExtractError, ExtractedRun, extract},
-    judgement::{JudgeError, Judgement, Unproved, judge},
+    judgement::{JudgeError, Judgement, judge},
     known_world::{Known, KnownWorld, MarkerStart},
     log_head::{LogHead, MarkerNotShown},
     marked_visits::{AddedMarker, MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
@@ -193,13 +193,23 @@ impl LogCheck<'_> {
             (error, _) => CheckError::Judge(error),
         })?;
         let judgement = match &extracted {
-            ExtractedRun { evidence: Evidence::Laser, junctions, proved, network, .. } => {
-                // Whether a corridor bends enough for a corner is no fact.
-                let proved = proved.as_ref().filter(|_| !self.laser.corner.corners);
-                let possible = PossibleVisits::judge(&complete, junctions, proved, &config, watch);
-                judgement.with_possible(possible.in_building(network.unwrap_or_default()))
+            ExtractedRun {
+                evidence: Evidence::Laser,
+                junctions,
+                proved,
+                network,
+                matched_scans,
+                ..
+            } => {
+                // Whether a corridor bends enough for a corner is no fact, nor is the motion between scans.
+                let is_fact = !self.laser.corner.corners && matched_scans.is_none();
+                let proved = proved.as_ref().filter(|_| is_fact);
+                let possible = PossibleVisits::judge(&complete, junctions, proved, &config, watch)
+                    .in_building(network.unwrap_or_default())
+                    .by_scans(*matched_scans);
+                judgement.with_possible(possible)
             }
-            ExtractedRun { got_lost: true, .. } => judgement.accusing_nobody(Unproved::Lost),
+            ExtractedRun { unproved: Some(why), .. } => judgement.accusing_nobody(*why),
             _ => judgement,
         };
         let twin = TwinWorld::find(&judgement, &config);

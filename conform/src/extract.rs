@@ -1,6 +1,8 @@
 //! Extracts the events of a log: recorded ones, or else those that are inferred from its scenes, images or
 //! laser scans and its odometry. Sections 3 to 6.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
@@ -14,11 +16,14 @@ use toposlam_logs::{
     topic_map::{BoundTopicMap, Role, TopicMap},
 };
 use toposlam_model::{
-    enumerate::Watch, format::document::DocumentError, measurement::MeasurementNoise,
+    driving::odometry::Odometry, enumerate::Watch, format::document::DocumentError,
+    measurement::MeasurementNoise,
 };
 use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
+    geometry::moved,
     laser::{params::LaserParams, scan_log::ScanLogBuilder},
+    place::{PlaceArm, PlaceView},
     sensing::Sensor,
     visits::{
         APPROACH_RANGE, VisitLog, Visits, logged_visits, network_fit::NetworkFit, proved_visits,
@@ -28,10 +33,12 @@ use toposlam_vision::{
 use super::{
     RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, UndecidedCause},
+    judgement::Unproved,
     marked_visits::{TimedSighting, VisitedJunction},
     message_clock::MessageClock,
     placed_scenes::{PlacedScenes, SceneClockError, SensedScene},
     scan_odometry::{PlacedScan, ScanOdometry, StampCounts},
+    scan_track::{MatchedScans, ScanTrack, UnmatchedScan},
     visit_events::visit_events,
 };
 
@@ -76,6 +83,8 @@ pub struct ExtractedRun {
     /// What was repaired in the messages.
     pub remarks: Vec<ReadingRemark>,
     pub stamps: StampCounts,
+    /// How scans were placed, if the log has no odometry.
+    pub matched_scans: Option<MatchedScans>,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
@@ -86,11 +95,17 @@ pub struct ExtractedRun {
     pub junctions: Vec<VisitedJunction>,
     /// The same visits by what the scans prove; `None` if they prove nothing.
     pub proved: Option<ProvedVisits>,
+    /// The arms that are seen at each of them, clockwise from the entry door.
+    pub arms: Vec<Vec<PlaceArm>>,
+    /// Where free space is wider than a corridor, in metres in the frame of odometry.
+    pub wide: Vec<[f64; 2]>,
+    /// Where each scan was taken, by its message, if the log has no odometry.
+    pub poses: BTreeMap<EventId, Odometry>,
     /// The sightings of a marker that is a fiducial.
     pub sightings: Vec<TimedSighting>,
-    /// Whether the log records that the robot got lost and went on, which events that are inferred from scenes or images
-    /// do not show.
-    pub got_lost: bool,
+    /// Why events that are inferred from scenes or images accuse nobody: the log records that the robot recovered, which
+    /// they do not show.
+    pub unproved: Option<Unproved>,
 }
 
 /// Visits by what was driven or is seen to end, with their events.
@@ -116,15 +131,15 @@ pub enum ExtractError {
     #[error(transparent)]
     TopicMap(#[from] DocumentError),
     #[error(
-        "no topics are known for percepts and doors, nor for scenes, images or laser scans with \
-         odometry"
+        "no topics are known for percepts and doors, nor for scenes or images with odometry, nor for laser scans"
     )]
     NothingMapped,
     /// Images must be sensed without a calibration or colours.
     #[error("its events must be inferred from its images: this needs --calibration and --colours")]
     NoSensor,
-    #[error("no odometry is recorded with its {scans} laser scans")]
-    NoOdometry { scans: u64 },
+    /// The log has no odometry, and its scans do not show where the robot was.
+    #[error(transparent)]
+    Unmatched(#[from] UnmatchedScan),
     /// An image is not of the calibrated camera.
     #[error("message {message}: {cause}")]
     Size { message: u64, cause: SensingError },
@@ -173,7 +188,9 @@ impl Evidence {
 
     /// The roles without which there are no events.
     pub fn needs(self) -> &'static [Role] {
-        self.roles().get(..2).unwrap_or_default()
+        // Without odometry scans are placed by themselves.
+        let count = if self == Self::Laser { 1 } else { 2 };
+        self.roles().get(..count).unwrap_or_default()
     }
 
     /// Its name as a value of `--events`.
@@ -184,7 +201,7 @@ impl Evidence {
         }
     }
 
-    /// The roles that it needs, two of them, and what it uses besides.
+    /// The roles that it needs, and what it uses besides.
     fn roles(self) -> &'static [Role] {
         match self {
             Self::Recorded => &[Role::Percept, Role::Door, Role::Odometry],
@@ -214,7 +231,7 @@ pub fn extract(
     watch: &impl Watch,
 ) -> Result<ExtractedRun, ExtractError> {
     let ExtractConfig { evidence, sensor, marked, laser } = *config;
-    // Only the recorded events show that a robot got lost.
+    // Only the recorded events show that a robot recovered.
     let recorded: &[Role] = match evidence {
         Evidence::Scenes | Evidence::Images => &[Role::Percept, Role::Door],
         Evidence::Recorded | Evidence::Laser => &[],
@@ -223,19 +240,27 @@ pub fn extract(
     let bound = mapping.only(asked).bind(log)?;
     let threads = rayon::current_num_threads();
     let events = RunEvents { truncated: log.truncation().is_some(), ..RunEvents::default() };
-    let mut extraction = Extraction {
-        run: ExtractedRun { events, evidence, ..ExtractedRun::default() },
+    let extraction = |placing| Extraction {
+        run: ExtractedRun { events: events.clone(), evidence, ..ExtractedRun::default() },
         recorded: RecordedEvents::default(),
         scenes: PlacedScenes::default(),
         waiting: Vec::new(),
         last: 0,
         sensors: sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]),
         watch,
-        scans: LoggedScans { sources: Vec::new(), log: ScanLogBuilder::new(laser) },
-        placing: ScanOdometry::default(),
+        scans: LoggedScans {
+            sources: Vec::new(),
+            poses: BTreeMap::new(),
+            log: ScanLogBuilder::new(laser),
+        },
+        placing,
     };
-    extraction.read_entries(log, &bound)?;
-    let Extraction { mut run, recorded, scenes, scans, .. } = extraction;
+    let mut read = extraction(Placing::Odometry(ScanOdometry::default()));
+    if read.read_entries(log, &bound)? == HasOdometry::No {
+        read = extraction(Placing::Scans(Box::new(ScanTrack::new(&laser.matching))));
+        read.read_entries(log, &bound)?;
+    }
+    let Extraction { mut run, recorded, scenes, scans, .. } = read;
     run.scans -= run.skipped.scans_without_odometry;
     let (seen, off_clock) = scenes.finish()?;
     run.seen = seen;
@@ -250,6 +275,10 @@ pub fn extract(
             Evidence::Laser => MeasurementNoise::UNKNOWN,
         };
     }
+    if run.matched_scans.is_some() {
+        // The way along a corridor is as the robot drove before.
+        run.events.measurement_noise = MeasurementNoise::UNKNOWN;
+    }
     if evidence == Evidence::Laser && run.events.end.is_some() {
         // Corners and dead ends are no visits: the recorded moves and map are those of another graph.
         (run.events.has_head, run.events.end, run.events.map) = (false, None, None);
@@ -258,13 +287,18 @@ pub fn extract(
     run.events.events = match evidence {
         Evidence::Recorded => run.events.events,
         Evidence::Scenes | Evidence::Images => {
-            run.got_lost = run.events.trace().is_ok_and(|trace| !trace.lost().is_empty());
+            run.unproved = Unproved::after_recovery(&run.events);
             infer_events(&run.seen, marked)
         }
         Evidence::Laser => {
-            let SensedLog { visits, proved, drift, network } = scans.visits(watch);
+            if run.matched_scans.is_some() {
+                run.poses.clone_from(&scans.poses);
+            }
+            let SensedLog { visits, proved, drift, network, wide } = scans.visits(watch);
+            run.arms = visits.visits.iter().map(|visit| visit.arms.clone()).collect();
             let (events, junctions) = visit_events(visits);
-            (run.junctions, run.drift, run.network) = (junctions, drift, Some(network));
+            (run.junctions, run.drift, run.network, run.wide) =
+                (junctions, drift, Some(network), wide);
             run.proved = proved.map(|visits| {
                 let (events, junctions) = visit_events(visits);
                 ProvedVisits { events, junctions }
@@ -284,11 +318,14 @@ struct SensedLog {
     drift: Option<f64>,
     /// Whether the building is a network of corridors.
     network: NetworkFit,
+    /// Where free space is wider than a corridor.
+    wide: Vec<[f64; 2]>,
 }
 
 /// The scans of a log, each with its source.
 struct LoggedScans {
     sources: Vec<EventSource>,
+    poses: BTreeMap<EventId, Odometry>,
     log: ScanLogBuilder,
 }
 
@@ -298,6 +335,7 @@ impl LoggedScans {
             // Scans are in the order of their stamps.
             let last = self.sources.last().map_or(0, |last| last.time);
             self.sources.push(EventSource { time: source.time.max(last), ..source });
+            self.poses.insert(source.id, odometry);
             self.log.add(scan, odometry);
         }
     }
@@ -315,8 +353,12 @@ impl LoggedScans {
         }
         let visits = logged_visits(&log, &views, |scan| self.sources[scan]);
         let proved = proved_visits(&log, &views, |scan| self.sources[scan]);
-        let network = NetworkFit::new(&views, &visits, &log.params().network);
-        SensedLog { visits, proved, drift: log.drift(), network }
+        let params = &log.params().network;
+        let network = NetworkFit::new(&views, &visits, params);
+        let is_wide = |view: &&PlaceView| view.width.is_some_and(|width| width > params.widest);
+        let place = |view: &PlaceView| moved(&view.odometry_from_map, &view.robot).position;
+        let wide = views.iter().filter(is_wide).map(place).collect();
+        SensedLog { visits, proved, drift: log.drift(), network, wide }
     }
 }
 
@@ -354,12 +396,30 @@ struct Extraction<'w, W> {
     sensors: Vec<Sensor>,
     watch: &'w W,
     scans: LoggedScans,
-    /// Scans that wait for their odometry.
-    placing: ScanOdometry,
+    placing: Placing,
+}
+
+/// How scans are placed.
+enum Placing {
+    /// Scans wait for their odometry.
+    Odometry(ScanOdometry),
+    /// By the walls of earlier scans: the log has no odometry.
+    Scans(Box<ScanTrack>),
+}
+
+/// Whether a log that has scans has odometry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum HasOdometry {
+    No,
+    Yes,
 }
 
 impl<W: Watch> Extraction<'_, W> {
-    fn read_entries(&mut self, log: &Log, bound: &BoundTopicMap) -> Result<(), ExtractError> {
+    fn read_entries(
+        &mut self,
+        log: &Log,
+        bound: &BoundTopicMap,
+    ) -> Result<HasOdometry, ExtractError> {
         let mut clock = MessageClock::default();
         let mut entries = log.entries(bound);
         for entry in entries.by_ref() {
@@ -376,18 +436,26 @@ impl<W: Watch> Extraction<'_, W> {
         let (rest, off_clock) = clock.finish();
         rest.into_iter().try_for_each(|entry| self.add_entry(entry))?;
         self.look()?;
-        let scans_without_odometry = self.placing.without_odometry();
-        self.run.skipped = SkippedMessages { off_clock, scans_without_odometry };
+        self.run.skipped.off_clock = off_clock;
         self.run.remarks = entries.remarks();
-        self.run.stamps = self.placing.counts();
-        match std::mem::take(&mut self.placing).finish() {
-            Some(waiting) => self.scans.add(waiting),
-            None if self.run.scans > 0 => {
-                return Err(ExtractError::NoOdometry { scans: self.run.scans });
+        let empty = Placing::Odometry(ScanOdometry::default());
+        match std::mem::replace(&mut self.placing, empty) {
+            Placing::Odometry(placing) => {
+                self.run.skipped.scans_without_odometry = placing.without_odometry();
+                self.run.stamps = placing.counts();
+                match placing.finish() {
+                    Some(waiting) => self.scans.add(waiting),
+                    None if self.run.scans > 0 => return Ok(HasOdometry::No),
+                    None => {}
+                }
             }
-            None => {}
+            Placing::Scans(track) => {
+                let (waiting, matched) = track.finish()?;
+                self.scans.add(waiting);
+                self.run.matched_scans = Some(matched);
+            }
         }
-        Ok(())
+        Ok(HasOdometry::Yes)
     }
 
     fn add_entry(&mut self, entry: Entry) -> Result<(), ExtractError> {
@@ -424,7 +492,9 @@ impl<W: Watch> Extraction<'_, W> {
         self.recorded.observe(source, &kind);
         match kind {
             EventKind::Odometry(odometry) => {
-                self.scans.add(self.placing.odometry(stamp, odometry));
+                if let Placing::Odometry(placing) = &mut self.placing {
+                    self.scans.add(placing.odometry(stamp, odometry));
+                }
                 if matches!(self.run.evidence, Evidence::Scenes | Evidence::Images) {
                     self.scenes.add_odometry(id, stamp, odometry);
                 }
@@ -437,7 +507,10 @@ impl<W: Watch> Extraction<'_, W> {
                 self.run.scan_messages.push(id);
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
                 let placed = PlacedScan { source, stamp, scan, odometry };
-                self.scans.add(self.placing.scan(placed));
+                self.scans.add(match &mut self.placing {
+                    Placing::Odometry(placing) => placing.scan(placed),
+                    Placing::Scans(track) => track.scan(placed)?,
+                });
             }
             EventKind::Frame(frame) => {
                 self.waiting.push((source, stamp, frame));

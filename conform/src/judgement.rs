@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 use thiserror::Error;
+use toposlam_logs::record::Arrival;
 use toposlam_model::{
     driving::visit::JunctionShape,
     enumerate::Watch,
@@ -119,6 +120,24 @@ pub enum Unproved {
     Scans,
     /// The robot got lost, which events that are inferred do not show.
     Lost,
+    /// The robot turned back at an obstacle as from a dead end, which events that are inferred do not show.
+    Obstacle,
+}
+
+impl Unproved {
+    /// Why events that are inferred from the scenes of a run accuse nobody, by what its log records: a robot that recovers
+    /// went on where its scenes show no junction.
+    pub(super) fn after_recovery(recorded: &RunEvents) -> Option<Self> {
+        let first = recorded.events.iter().position(|event| event.arrival().is_some());
+        let mut arrivals = recorded.events.iter().filter_map(CheckedEvent::arrival);
+        if recorded.relocations().any(|at| Some(at) != first) {
+            Some(Self::Lost)
+        } else if recorded.has_head && arrivals.any(Arrival::is_at_obstacle) {
+            Some(Self::Obstacle)
+        } else {
+            None
+        }
+    }
 }
 
 /// A limit that was reached before everything was checked.

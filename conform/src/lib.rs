@@ -27,6 +27,7 @@ mod quirks;
 mod recorded_events;
 mod report;
 mod scan_odometry;
+mod scan_track;
 mod shorten;
 mod shorten_measured;
 mod tolerance;
@@ -71,6 +72,7 @@ pub use report::{
     ReportedEvent, ReportedVisit, RequiredCoverage, SmallestFound, SourceFile, ToleratedQuirk,
     UnprovedDivergence, UnreadLog, WorldFact, case_names,
 };
+pub use scan_track::{MatchedScans, UnmatchedScan};
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};
 pub use twin::TwinWorld;
 pub use visit_events::visit_events;

@@ -22,6 +22,7 @@ use super::{
     extract::ProvedVisits,
     known_world::KnownWorld,
     marked_visits::VisitedJunction,
+    scan_track::MatchedScans,
 };
 
 /// The visits of a log, and whether some choice of their percepts fits.
@@ -38,6 +39,9 @@ pub struct PossibleVisits {
     /// The time of the visit up to which no choice of what is proved fits the known world, in nanoseconds.
     #[serde(skip)]
     pub(super) refuted: Option<u64>,
+    /// Whether the log has no odometry, and scans too far apart to show where the robot drove.
+    #[serde(skip)]
+    are_scans_far_apart: bool,
     /// Where the robot may be after the last visit in the known world.
     #[serde(skip)]
     pub(super) states: Vec<State>,
@@ -78,10 +82,10 @@ impl PossibleVisits {
         watch: &dyn Watch,
     ) -> Self {
         let by_anyone = config.driver == RunDriver::Anyone;
-        let (_, sets): (Vec<_>, Vec<_>) =
+        let (at, sets): (Vec<_>, Vec<_>) =
             visit_sets(&events.events, junctions, config.marker).into_iter().unzip();
-        let of_junctions: Vec<usize> =
-            (0..sets.len()).filter(|&set| sets[set] != VisitSet::turned_back()).collect();
+        let is_visit = |&set: &usize| events.events[at[set]].kind != CheckedKind::TurnedBack;
+        let of_junctions: Vec<usize> = (0..sets.len()).filter(is_visit).collect();
         let certain = of_junctions.iter().filter(|&&set| sets[set].is_certain()).count();
         let mut judged = Self { visits: of_junctions.len(), certain, by_anyone, ..Self::default() };
         if has_unseen_way(&events.events) {
@@ -120,6 +124,11 @@ impl PossibleVisits {
         Self { network, refuted, ..self }
     }
 
+    pub(super) fn by_scans(self, matched: Option<MatchedScans>) -> Self {
+        let are_scans_far_apart = matched.is_some_and(|matched| matched.are_far_apart());
+        Self { are_scans_far_apart, ..self }
+    }
+
     /// Whether so many visits are certain that a choice that fits says something.
     pub fn is_certain_enough(&self) -> bool {
         let [least, of] = CERTAIN_PART;
@@ -130,6 +139,7 @@ impl PossibleVisits {
     /// would.
     pub(super) fn says_nothing(&self) -> bool {
         self.network.fault.is_some()
+            || self.are_scans_far_apart
             || self.fit == VisitFit::Contradiction
             || self.by_anyone && self.fit == VisitFit::Anything
     }
@@ -138,6 +148,7 @@ impl PossibleVisits {
     pub(super) fn conform(&self) -> bool {
         self.by_anyone
             && self.network.fault.is_none()
+            && !self.are_scans_far_apart
             && self.fit == VisitFit::Fits
             && self.is_certain_enough()
     }

@@ -207,13 +207,13 @@ impl ScanOdometry {
         let placed: Vec<_> = self.waiting.iter().map(place).collect();
         let mut order = self.order;
         let placed = order.add(placed);
-        Some(placed.into_iter().chain(order.waiting))
+        Some(placed.into_iter().chain(order.finish()))
     }
 }
 
 /// Puts scans in the order of their stamps.
 #[derive(Clone, Debug, Default)]
-struct ScanOrder {
+pub(super) struct ScanOrder {
     waiting: VecDeque<PlacedScan>,
     latest: u64,
 }
@@ -223,7 +223,7 @@ impl ScanOrder {
     const MOST: usize = 64;
 
     /// Adds scans. Returns those before which no scan is expected.
-    fn add(&mut self, scans: Vec<PlacedScan>) -> Vec<PlacedScan> {
+    pub(super) fn add(&mut self, scans: Vec<PlacedScan>) -> Vec<PlacedScan> {
         let mut released = Vec::new();
         for scan in scans {
             if self.latest.abs_diff(scan.stamp) > HISTORY {
@@ -241,6 +241,11 @@ impl ScanOrder {
             released.extend(self.waiting.drain(..due));
         }
         released
+    }
+
+    /// The scans that still wait.
+    pub(super) fn finish(self) -> Vec<PlacedScan> {
+        self.waiting.into()
     }
 }
 

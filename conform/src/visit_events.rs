@@ -10,7 +10,8 @@ use super::{
     marked_visits::VisitedJunction,
 };
 
-/// The events of visits, and the junctions of those that are arrivals or undecided.
+/// The events of visits, and the junctions of those that are arrivals or undecided. They are in order by construction: the
+/// time of an event that belongs to an earlier view than the one before it is that of the one before.
 pub fn visit_events(log: VisitLog<EventSource>) -> (Vec<CheckedEvent>, Vec<VisitedJunction>) {
     let (mut events, mut junctions): (Vec<CheckedEvent>, Vec<_>) = (Vec::new(), Vec::new());
     let turned_back =
@@ -46,6 +47,11 @@ pub fn visit_events(log: VisitLog<EventSource>) -> (Vec<CheckedEvent>, Vec<Visit
         }
     }
     events.extend(log.turned_back.iter().map(turned_back));
+    let mut last = 0;
+    for CheckedEvent { source, .. } in &mut events {
+        source.time = source.time.max(last);
+        last = source.time;
+    }
     (events, junctions)
 }
 
@@ -100,6 +106,11 @@ mod tests {
         let least = shorten_frames(&seen, &events[2]).unwrap();
         // Two images of the junction, and where the robot went.
         assert!(least.len() == 3 && kinds(&infer_events(least, false)));
+        // A place that is left after the next one was seen is left before it.
+        let mut log = VisitLog { visits: Vec::new(), turned_back: Vec::new() };
+        log.turned_back = [9, 7, 8].map(|time| EventSource { time, ..events[0].source }).to_vec();
+        let times: Vec<_> = visit_events(log).0.iter().map(|event| event.source.time).collect();
+        assert_eq!(times, [9, 9, 9]);
         // A percept does not show in what was seen alone.
         assert_eq!(shorten_frames(&seen, &events[0]), None);
     }

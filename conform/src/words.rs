@@ -28,6 +28,7 @@ use super::{
         UnprovedDivergence, WorldFact,
     },
     scan_odometry::StampCounts,
+    scan_track::MatchedScans,
     twin::TwinWorld,
 };
 
@@ -221,6 +222,13 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
         }
     }
     remarks.extend(facts.possible.as_ref().and_then(|visits| no_network(&visits.network)));
+    if let Some(matched) = facts.matched_scans.filter(MatchedScans::are_far_apart) {
+        let far = grouped(matched.far.into());
+        remarks.push(format!(
+            "the log has no odometry, and {far} of its scans are more than 0.3 m from the one before: how far the robot \
+             drove along corridors is not known"
+        ));
+    }
     remarks.extend(facts.contradiction.as_ref().map(unproved));
     remarks.extend(facts.possible.as_ref().and_then(|visits| possible(visits, report)));
     if let Some((event, why)) = facts.unrecognised
@@ -267,6 +275,9 @@ fn unproved(divergence: &UnprovedDivergence) -> String {
         Unproved::Scans => "what scans show may be wrong where the robot did not drive",
         Unproved::Lost => {
             "the log records that the robot got lost, which inferred events do not show"
+        }
+        Unproved::Obstacle => {
+            "the log records that the robot turned back at an obstacle, which inferred events do not show"
         }
     };
     format!("event {number} does not fit: {found}; {cause}. This accuses nobody: {why}")
@@ -430,11 +441,10 @@ pub fn facts(report: &LogReport) -> Vec<(&'static str, String)> {
         ),
         (
             "odometry",
-            facts.drift.map(|drift| {
-                let drift = drift.to_degrees();
-                let what = "scans are matched with the walls of earlier ones";
-                format!("its heading drifts by {drift:.1} degrees in 10 m: {what}")
-            }),
+            match facts.matched_scans {
+                Some(matched) => Some(without_odometry(matched)),
+                None => facts.drift.map(drift),
+            },
         ),
         ("marker", facts.added_marker.map(added_marker)),
         ("world", Some(world(report))),
@@ -448,7 +458,7 @@ pub fn facts(report: &LogReport) -> Vec<(&'static str, String)> {
 }
 
 fn events(report: &LogReport) -> String {
-    let Facts { evidence, images, scans, .. } = report.facts;
+    let Facts { evidence, images, scans, matched_scans, .. } = report.facts;
     let count = counted(report.events.len(), "event");
     let source = match evidence {
         Evidence::Recorded => "recorded in the log".to_owned(),
@@ -457,10 +467,28 @@ fn events(report: &LogReport) -> String {
             format!("inferred from {} images and odometry", grouped(images.into()))
         }
         Evidence::Laser => {
-            format!("inferred from {} laser scans and odometry", grouped(scans.into()))
+            let odometry = if matched_scans.is_some() { "" } else { " and odometry" };
+            format!("inferred from {} laser scans{odometry}", grouped(scans.into()))
         }
     };
     format!("{count}, {source}")
+}
+
+fn drift(drift: f64) -> String {
+    let drift = drift.to_degrees();
+    let what = "scans are matched with the walls of earlier ones";
+    format!("its heading drifts by {drift:.1} degrees in 10 m: {what}")
+}
+
+fn without_odometry(MatchedScans { unmatched, .. }: MatchedScans) -> String {
+    let skipped = match unmatched {
+        0 => String::new(),
+        _ => format!("; {} that match nothing are skipped", counted(unmatched as usize, "scan")),
+    };
+    format!(
+        "not recorded: scans are placed by the walls of earlier ones, and lengths along corridors are not \
+         certain{skipped}"
+    )
 }
 
 fn added_marker(added: AddedMarker) -> String {

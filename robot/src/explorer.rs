@@ -144,7 +144,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         &mut self,
         settings: &RunSettings,
     ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
-        let RunSettings { method, dart_bound, budget, ref earlier } = *settings;
+        let RunSettings { method, dart_bound, budget, ref earlier, .. } = *settings;
         self.allowance = Allowance::new(budget);
         self.returns_at_obstacles |= method.recovers();
         self.begins_anywhere = !earlier.is_empty();

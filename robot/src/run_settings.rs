@@ -3,6 +3,7 @@
 use std::fmt;
 
 use toposlam_model::mapping::{EarlierWalk, MappingAlgorithm, MappingMethod};
+use toposlam_vision::laser::params::LaserParams;
 
 use crate::{budget::RunBudget, measured_hallway::log_noise};
 
@@ -16,6 +17,8 @@ pub struct RunSettings {
     /// The most darts of its map.
     pub dart_bound: usize,
     pub budget: RunBudget,
+    /// What a laser scanner takes for vertices; `None` by a camera.
+    pub laser: Option<LaserVertices>,
     /// The walks of earlier runs from which it goes on. Without any, it starts at its marker.
     pub earlier: Vec<EarlierWalk>,
 }
@@ -24,7 +27,7 @@ impl RunSettings {
     /// A run from the marker, without a budget.
     pub fn new(method: impl Into<MappingMethod>, dart_bound: usize) -> Self {
         let (budget, earlier) = (RunBudget::default(), Vec::new());
-        Self { method: method.into(), dart_bound, budget, earlier }
+        Self { method: method.into(), dart_bound, budget, laser: None, earlier }
     }
 }
 
@@ -37,6 +40,36 @@ pub struct RecordedSettings {
     pub is_resumed: bool,
     /// The most darts of its map.
     pub dart_bound: usize,
+    /// What a laser scanner took for vertices; `None` by a camera, or if it is not recorded.
+    pub laser: Option<LaserVertices>,
+}
+
+/// What a robot with a laser scanner takes for vertices of its building.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaserVertices {
+    /// A way that ends nearer than this to a junction is no arm of it, in metres.
+    pub min_arm: f64,
+    /// Whether bends and dead ends are vertices.
+    pub corners: bool,
+}
+
+impl LaserVertices {
+    /// Those of a robot that follows Algorithm 2, whose hallways may be short. To a log of its scans, bends and dead ends are
+    /// parts of corridors.
+    pub const OF_HALLWAYS: Self = Self { min_arm: 3.0, corners: false };
+
+    /// The same parameters with these vertices.
+    #[must_use]
+    pub fn in_params(self, mut params: LaserParams) -> LaserParams {
+        (params.arm.min_arm, params.corner.corners) = (self.min_arm, self.corners);
+        params
+    }
+}
+
+impl From<&LaserParams> for LaserVertices {
+    fn from(LaserParams { arm, corner, .. }: &LaserParams) -> Self {
+        Self { min_arm: arm.min_arm, corners: corner.corners }
+    }
 }
 
 impl Default for RecordedSettings {
@@ -46,6 +79,7 @@ impl Default for RecordedSettings {
             budget: RunBudget::default(),
             is_resumed: false,
             dart_bound: DEFAULT_MAX_DARTS,
+            laser: None,
         }
     }
 }
@@ -53,8 +87,9 @@ impl Default for RecordedSettings {
 impl RunSettings {
     /// What the head of its log says.
     pub fn recorded(&self) -> RecordedSettings {
-        let Self { method, budget, dart_bound, .. } = *self;
-        RecordedSettings { method, budget, is_resumed: !self.earlier.is_empty(), dart_bound }
+        let Self { method, budget, dart_bound, laser, .. } = *self;
+        let is_resumed = !self.earlier.is_empty();
+        RecordedSettings { method, budget, is_resumed, dart_bound, laser }
     }
 }
 
@@ -74,6 +109,9 @@ impl fmt::Display for RecordedSettings {
         }
         if self.dart_bound != DEFAULT_MAX_DARTS {
             write!(out, " max-darts={}", self.dart_bound)?;
+        }
+        if let Some(LaserVertices { min_arm, corners }) = self.laser {
+            write!(out, " min-arm={min_arm} corners={}", if corners { "yes" } else { "no" })?;
         }
         if self.is_resumed { write!(out, " resumed") } else { Ok(()) }
     }
@@ -97,6 +135,7 @@ impl RecordedSettings {
     pub fn from_head(text: &str) -> Result<Self, String> {
         let mut settings = Self::default();
         let mut method = Vec::new();
+        let (mut min_arm, mut corners) = (None, None);
         for word in text.split(' ') {
             let (name, number) = word.split_once('=').unwrap_or((word, ""));
             let real = || number.parse().ok().filter(|number: &f64| *number > 0.0);
@@ -107,11 +146,21 @@ impl RecordedSettings {
                 "max-seconds" => budget.seconds = Some(real().ok_or_else(no_number)?),
                 "max-metres" => budget.metres = Some(real().ok_or_else(no_number)?),
                 "max-darts" => settings.dart_bound = number.parse().map_err(|_| no_number())?,
+                "min-arm" => min_arm = Some(real().ok_or_else(no_number)?),
+                "corners" => {
+                    corners = match number {
+                        "yes" => Some(true),
+                        "no" => Some(false),
+                        _ => return Err(format!("`{word}` is neither yes nor no")),
+                    };
+                }
                 "resumed" => settings.is_resumed = true,
                 _ => method.push(word),
             }
         }
         settings.method = method.join(" ").parse()?;
+        settings.laser =
+            min_arm.zip(corners).map(|(min_arm, corners)| LaserVertices { min_arm, corners });
         if let MappingMethod::Recovering(config) = &mut settings.method {
             config.noise = Some(log_noise());
         }
@@ -129,6 +178,8 @@ mod tests {
             "algorithm1",
             "folding audits=2 max-moves=25",
             "folding recovering audits=1 max-darts=12",
+            "folding audits=1 min-arm=4.5 corners=no",
+            "folding max-darts=12 min-arm=10 corners=yes resumed",
             "folding recovering audits=1 max-seconds=1200 max-metres=500.5 resumed",
         ] {
             assert_eq!(RecordedSettings::from_head(text).unwrap().to_string(), text);
@@ -136,6 +187,8 @@ mod tests {
         for (text, cause) in [
             ("folding max-moves=-1", "`max-moves=-1` has no number"),
             ("folding max-metres=0", "`max-metres=0` has no number"),
+            ("folding min-arm=-1 corners=no", "`min-arm=-1` has no number"),
+            ("folding min-arm=1 corners=maybe", "`corners=maybe` is neither yes nor no"),
             ("folding max-darts=few", "`max-darts=few` has no number"),
             ("max-moves=3", "`` is not algorithm1 or folding"),
             ("folding slowly", "`slowly` does not follow the name of an algorithm"),

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use toposlam_conform::Evidence;
+use toposlam_model::format::document::Document;
+use toposlam_robot::run_settings::LaserVertices;
 use toposlam_vision::{laser::params::LaserParams, params};
 
 use super::{CliError, input};
@@ -21,7 +23,8 @@ pub(super) struct LaserOptions {
 pub(super) struct WorldLaserOptions {
     #[command(flatten)]
     laser: LaserOptions,
-    /// Whether bends and dead ends of corridors are vertices, for laser scans [default: no]
+    /// Whether bends and dead ends of corridors are vertices, for laser scans
+    /// [default: from the log, or else no]
     #[arg(long, value_enum, value_name = "WHETHER")]
     corners: Option<Corners>,
 }
@@ -40,12 +43,29 @@ impl LaserOptions {
         self.laser_params.as_ref().map(|_| "--laser-params")
     }
 
-    /// The parameters.
-    pub(super) fn params(&self) -> Result<LaserParams, CliError> {
-        let Some(path) = &self.laser_params else { return Ok(LaserParams::default()) };
-        let text = String::from_utf8(input::read(path)?)
-            .map_err(|error| CliError::in_file(path, error))?;
-        params::read(&text).map_err(|error| CliError::in_file(path, error))
+    /// The parameters. What a log records of its robot's vertices holds where the file does not set it.
+    pub(super) fn params(&self, recorded: Option<LaserVertices>) -> Result<LaserParams, CliError> {
+        let recorded = recorded.unwrap_or_else(|| (&LaserParams::default()).into());
+        let Some(path) = &self.laser_params else {
+            return Ok(recorded.in_params(LaserParams::default()));
+        };
+        let wrong = |error: &dyn std::fmt::Display| CliError::in_file(path, error.to_string());
+        let text = String::from_utf8(input::read(path)?).map_err(|error| wrong(&error))?;
+        let params: LaserParams = params::read(&text).map_err(|error| wrong(&error))?;
+        let document = Document::parse_settings(text.as_bytes()).map_err(|error| wrong(&error))?;
+        let is_set = |table: &str, key: &str| {
+            let tables = document.root().any_table().ok();
+            let inner = tables.and_then(|tables| tables.get(table)?.any_table().ok());
+            inner.is_some_and(|inner| inner.get(key).is_some())
+        };
+        let mut vertices = LaserVertices::from(&params);
+        if !is_set("arm", "min_arm") {
+            vertices.min_arm = recorded.min_arm;
+        }
+        if !is_set("corner", "corners") {
+            vertices.corners = recorded.corners;
+        }
+        Ok(vertices.in_params(params))
     }
 }
 
@@ -62,9 +82,9 @@ impl WorldLaserOptions {
         }
     }
 
-    /// The parameters.
-    pub(super) fn params(&self) -> Result<LaserParams, CliError> {
-        let mut params = self.laser.params()?;
+    /// The parameters, for a log that records this of its robot's vertices.
+    pub(super) fn params(&self, recorded: Option<LaserVertices>) -> Result<LaserParams, CliError> {
+        let mut params = self.laser.params(recorded)?;
         if let Some(corners) = self.corners {
             params.corner.corners = corners == Corners::Yes;
         }

@@ -36,7 +36,8 @@ use super::{
 /// in view, its position is reported too.
 ///
 /// A log with laser scans and odometry is read from its beginning. Whenever the robot has moved on, the
-/// result is the junctions of the local map.
+/// result is the junctions of the local map: what one live view shows. `conform` uses the whole log, and
+/// may find others.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
@@ -45,12 +46,12 @@ Example:
     --stages steps
   toposlam sense run.mcap --scans 60..=70 --stages steps
 
-An image that cannot be used is reported, and the others are sensed.
+A file that cannot be used is reported, and the others are sensed.
 
 Angles and positions are relative to the robot's heading, counter-clockwise. Doors are listed \
 clockwise from the entry door.",
     &[
-        (0, "all images were sensed, also if a scene is unknown"),
+        (0, "all images and scans were sensed, also if a scene is unknown"),
         (2, "bad usage, or an input cannot be used"),
     ],
 ))]

@@ -11,7 +11,10 @@ use toposlam_logs::{
 use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
 };
-use toposlam_robot::{recording::Recording, run_settings::RunSettings};
+use toposlam_robot::{
+    recording::Recording,
+    run_settings::{LaserVertices, RunSettings},
+};
 use toposlam_simulator::{
     FAULTS, FOR_EVER, LearnedSensors, LearningError, RobotFault, SimulatedRobot, SimulationConfig,
     run::{Run, RunOutcome, offline, run},
@@ -185,6 +188,8 @@ impl SimulateArguments {
             is_enough.map_err(|error| CliError::at("--scanner", error))?;
         }
         let settings = self.options.settings(Some(&world_hash(&world.graph, facing)))?;
+        let laser = scanner.as_ref().map(|_| LaserVertices::OF_HALLWAYS);
+        let settings = RunSettings { laser, ..settings };
         let config = SimulationConfig {
             noise: self.noise,
             keeps_track: self.options.log.is_some(),

@@ -1,26 +1,56 @@
 //! Files of other programs, by their beginnings: what they are, and what to write instead.
 
-/// What a file that is not a world is, if it is one of another program.
-pub(crate) fn world_of_other(bytes: &[u8]) -> Option<String> {
+use toposlam_model::format::named_world::NamedWorld;
+
+use super::placed_graph::{PlacedGraph, PlacedGraphError, read_dot, read_graphml, read_tmap2};
+
+/// Reads a graph.
+type Read = fn(&str) -> Result<PlacedGraph, PlacedGraphError>;
+
+/// The world of a file of another program, which has the positions of its nodes; `None` if the file is not of another
+/// program.
+///
+/// # Errors
+/// Returns what the file is and why it is no world.
+pub(crate) fn world_of_other(bytes: &[u8]) -> Option<Result<NamedWorld, String>> {
     let text = beginning(bytes);
     let start = text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']);
     let first = start.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or_default();
     let has = |part: &str| text.contains(part);
-    let what = match first.to_ascii_lowercase().as_str() {
-        "graph" | "digraph" | "strict" => "a graph in DOT (Graphviz), which `draw` writes, too",
-        _ if start.starts_with("/*") || start.starts_with("//") => "a graph in DOT (Graphviz)",
-        _ if has("<graphml") => "a graph in GraphML",
-        _ if has("<gexf") => "a graph in GEXF",
-        _ if start.starts_with('<') => "XML",
-        _ if has("nodes:") && (has("edge_id:") || has("metric_map:") || has("pointset:")) => {
-            "a topological map (tmap2 YAML)"
+    let (what, read): (_, Option<Read>) = match first.to_ascii_lowercase().as_str() {
+        "graph" | "digraph" | "strict" => ("a graph in DOT (Graphviz)", Some(read_dot)),
+        _ if start.starts_with("/*") || start.starts_with("//") => {
+            ("a graph in DOT (Graphviz)", Some(read_dot))
+        }
+        _ if has("<graphml") => ("a graph in GraphML", Some(read_graphml)),
+        _ if has("<gexf") => ("a graph in GEXF", None),
+        _ if start.starts_with('<') => ("XML", None),
+        // The older maps are lists of nodes.
+        _ if (has("nodes:") || has("node:") && start.starts_with('-'))
+            && (has("edge_id:") || has("metric_map:") || has("pointset:")) =>
+        {
+            ("a topological map (tmap2 YAML)", Some(read_tmap2))
         }
         _ => return None,
     };
-    Some(format!(
-        "this is {what}. It does not state the clockwise order of the edges around each vertex, which a world needs; \
-         worlds are read from TOML and JSON (docs: worlds/README.md) and plantri's planar_code and edge_code"
-    ))
+    let world = match read {
+        Some(read) => {
+            let text = String::from_utf8_lossy(bytes);
+            read(text.trim_start_matches('\u{feff}')).and_then(|graph| graph.world())
+        }
+        None => Ok(None),
+    };
+    // In DOT without positions it does not matter what else is not read.
+    let is_placed = !what.contains("DOT") || has("pos");
+    Some(match world {
+        Ok(Some(world)) => Ok(world),
+        Err(error) if is_placed => Err(format!("this is {what}: {error}")),
+        Ok(None) | Err(_) => Err(format!(
+            "this is {what}. It does not state the clockwise order of the edges around each vertex, which a world \
+             needs, nor positions of its nodes; worlds are read from TOML and JSON (docs: worlds/README.md), \
+             plantri's planar_code and edge_code, and from GraphML, DOT and tmap2 YAML with positions"
+        )),
+    })
 }
 
 /// The text at the beginning of a file.
@@ -38,14 +68,33 @@ mod tests {
         for (text, what) in [
             ("graph G { a -- b }", "this is a graph in DOT"),
             ("// by hand\ndigraph { a -> b }", "this is a graph in DOT"),
-            ("<?xml version=\"1.0\"?><graphml/>", "this is a graph in GraphML"),
-            ("name: hall\nnodes:\n- node: {edges: [{edge_id: A_B}]}", "this is a topological map"),
+            ("<graphml><graph><node id='a'/></graph></graphml>", "this is a graph in GraphML"),
+            (
+                "nodes:\n- node: {name: A, edges: [{edge_id: A_B, node: B}]}",
+                "this is a topological map",
+            ),
+            ("<gexf/>", "this is a graph in GEXF"),
         ] {
-            let found = world_of_other(text.as_bytes()).unwrap();
+            let found = world_of_other(text.as_bytes()).unwrap().unwrap_err();
             assert!(found.starts_with(what) && found.contains("TOML and JSON"), "{found}");
         }
         for text in ["name = \"x\"\n", "", "\u{1}\u{2}", "[floor]\ngraph = 1"] {
             assert_eq!(world_of_other(text.as_bytes()), None, "{text}");
         }
+    }
+
+    #[test]
+    fn a_file_with_positions_is_a_world_or_says_why_it_is_none() {
+        let two = "graph { a [pos=\"0,0\"]; b [pos=\"1,0\"]; a -- b }";
+        assert_eq!(world_of_other(two.as_bytes()).unwrap().unwrap().graph.edge_count(), 1);
+        let one_way = two.replace("graph", "digraph").replace("--", "->");
+        let found = world_of_other(one_way.as_bytes()).unwrap().unwrap_err();
+        assert!(
+            found.starts_with("this is a graph in DOT (Graphviz): an edge leads from"),
+            "{found}"
+        );
+        let broken = "<graphml>\n</graph>";
+        let found = world_of_other(broken.as_bytes()).unwrap().unwrap_err();
+        assert!(found.starts_with("this is a graph in GraphML: line 2: "), "{found}");
     }
 }

@@ -3,7 +3,6 @@
 
 use std::{
     ffi::OsString,
-    fmt::Display,
     fs,
     io::{self, Cursor, Read},
     path::{Path, PathBuf},
@@ -28,7 +27,7 @@ use super::{CliError, files::files, foreign_format};
 pub fn read_world(path: &Path) -> Result<NamedWorld, CliError> {
     let bytes = read_at_most(path, MOST_WORLDS)?;
     let mut world = match plantri::PlantriCode::of_file(path, &bytes) {
-        None => world_file::read(&bytes).map_err(|error| not_a_world(path, &bytes, error))?,
+        None => world_in_file(path, &bytes)?,
         Some(code) => match <[_; 1]>::try_from(read_plantri(path, &bytes, code)?) {
             Ok([graph]) => NamedWorld::numbered("", "", graph, None),
             Err(graphs) => {
@@ -70,10 +69,14 @@ pub fn read_camera(path: &Path) -> Result<Camera, CliError> {
     calibration::read(&bytes, beside).map_err(|error| CliError::in_file(path, error))
 }
 
-/// The failure for a file that is not a world, which may be one of another program.
-fn not_a_world(path: &Path, bytes: &[u8], error: impl Display) -> CliError {
+/// The world of a world file, or of a file of another program that has positions.
+fn world_in_file(path: &Path, bytes: &[u8]) -> Result<NamedWorld, CliError> {
+    let error = match world_file::read(bytes) {
+        Ok(world) => return Ok(world),
+        Err(error) => error,
+    };
     let other = foreign_format::world_of_other(bytes);
-    CliError::in_file(path, other.unwrap_or_else(|| error.to_string()))
+    other.unwrap_or_else(|| Err(error.to_string())).map_err(|cause| CliError::in_file(path, cause))
 }
 
 /// The start from the command line, or else from the world file, or else the first dart.
@@ -90,8 +93,7 @@ pub fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, CliError> {
     if let Some(code) = plantri::PlantriCode::of_file(path, &bytes) {
         return read_plantri(path, &bytes, code);
     }
-    let world = world_file::read(&bytes).map_err(|error| not_a_world(path, &bytes, error))?;
-    Ok(vec![world.graph])
+    Ok(vec![world_in_file(path, &bytes)?.graph])
 }
 
 fn read_plantri(

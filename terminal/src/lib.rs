@@ -21,6 +21,7 @@ pub mod method_options;
 pub mod outcome;
 pub mod output;
 pub mod picture_file;
+mod placed_graph;
 pub mod progress;
 pub mod report_output;
 pub mod scene;

@@ -25,6 +25,7 @@ use super::super::{
     measured_hallways::MeasuredHallways,
     possible_visits::PossibleVisits,
     scan_odometry::StampCounts,
+    scan_track::MatchedScans,
     twin::TwinWorld,
 };
 use super::events::PoseName;
@@ -54,6 +55,8 @@ pub struct Facts {
     #[serde(rename = "repaired")]
     pub reading: Vec<ReadingRemark>,
     pub stamps: StampCounts,
+    /// How scans were placed, if the log has no odometry.
+    pub matched_scans: Option<MatchedScans>,
     pub recorded: Option<RecordedWorld>,
     #[serde(serialize_with = "recorded_ending")]
     pub ending: Option<RunEnding>,
@@ -247,6 +250,7 @@ impl CheckedLog {
             class: Some(self.config.search.class),
             field_of_view: extracted.field_of_view,
             drift: extracted.drift,
+            matched_scans: extracted.matched_scans,
         }
     }
 

@@ -118,7 +118,8 @@ fn the_first_source_of_events_that_is_complete_is_chosen() {
         (3, true, Some(Evidence::Scenes)),
         (2, true, Some(Evidence::Images)),
         (1, true, Some(Evidence::Laser)),
-        (1, false, None),
+        (1, false, Some(Evidence::Laser)),
+        (0, true, None),
     ] {
         let mut log = Written::new();
         ALL.iter().take(kinds).for_each(|write| write(&mut log));
@@ -173,7 +174,16 @@ fn scans_long_before_the_first_odometry_and_off_the_clock_are_counted() {
         write(&mut log);
         log.extract(Evidence::Laser)
     };
-    assert!(matches!(nowhere(Written::scan), Err(ExtractError::NoOdometry { scans: 1 })));
+    let by_scans = nowhere(Written::scan).unwrap();
+    assert_eq!(
+        (by_scans.scans, by_scans.matched_scans),
+        (1, Some(MatchedScans { placed: 0, unmatched: 1, far: 0 }))
+    );
+    let unmatched = nowhere(|log| (0..10).for_each(|_| log.scan())).unwrap_err();
+    assert!(matches!(
+        unmatched,
+        ExtractError::Unmatched(UnmatchedScan { message: EventId(2), time: 5_001_000_000_000 })
+    ));
     assert_eq!(nowhere(Written::scene).unwrap().scans, 0);
 }
 

@@ -1,9 +1,13 @@
 //! Logs of robots that recover, that got lost, and that turn back to keep within a budget.
 
+use toposlam_logs::{messages, reader, recorder::Recorder, topic_map::TopicMap};
 use toposlam_model::{
+    format::named_world::NamedWorld,
     mapping::MappedWorld,
+    marker::{Marker, NoMarker, Undirected},
     trace::{AllowedStep, Departure, MatchEnd, StepPurpose},
 };
+use toposlam_vision::laser::params::LaserParams;
 
 use super::*;
 
@@ -157,4 +161,90 @@ fn a_robot_that_recovers_does_not_end_with_lengths_that_contradict_each_other() 
     let judgement = judged(&events, &config);
     assert_eq!(judgement.algorithm.unwrap().reached, MatchEnd::EndOfTrace);
     assert_eq!(judgement.divergence.unwrap().cause.name(), "moved");
+}
+
+/// The judgements of the scenes of a run that recovers from a fault: with and without its world, with and without its
+/// algorithm, with a search that ends early, and with other markers.
+fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
+    let place = place_in(name);
+    let settings = RunSettings::new(recovering(), DARTS);
+    let faults = vec![fault.parse().unwrap()];
+    let (plan, facing) = (&place.0, place.1);
+    let robot = SimulationConfig::at_start(plan.clone(), facing, seed);
+    let robot = SimulationConfig { faults, keeps_track: true, ..robot };
+    let head = messages::Run {
+        marker: "directional".to_owned(),
+        algorithm: settings.recorded().to_string(),
+        ..messages::Run::default()
+    };
+    let mut log = Vec::new();
+    let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
+    run(plan, facing, robot.by_scene(), NoSensor, &mut recorder, &settings);
+    recorder.finish().unwrap();
+    let log = reader::Log::of_bytes(log).unwrap();
+    let topics = TopicMap::unambiguous(&log);
+    let source = LogSource { log: &log, topics: &topics, head: Some(&head), sensor: None };
+    let world = NamedWorld::numbered(name, "", plan.graph().clone(), Some(facing));
+    let anyone = DoorChooser::Anyone;
+    let marked: [(_, Option<&'static dyn Marker>); 4] = [
+        (DoorChooser::Algorithm(None), None),
+        (anyone, None),
+        (anyone, Some(&NoMarker)),
+        (anyone, Some(&Undirected)),
+    ];
+    let check = |(doors, marker), world, start, steps| {
+        let check = LogCheck {
+            evidence: Evidence::Scenes,
+            laser: LaserParams::default(),
+            world,
+            start,
+            marker,
+            assumes_marker: false,
+            doors,
+            search: WorldSearch { class: Class::Multigraph, max_edges: None, steps },
+            max_darts: None,
+            quirks: &Quirks::default(),
+        };
+        check.run(&source, &(), || {}).unwrap().judgement
+    };
+    let (recorded, anywhere) = (RobotStart::Recorded, RobotStart::Anywhere);
+    let ways = [
+        (None, recorded, 50),
+        (None, recorded, 10_000),
+        (Some(&world), recorded, 50),
+        (Some(&world), anywhere, 50),
+    ];
+    let judgements = |how| ways.map(|(world, start, steps)| check(how, world, start, steps));
+    marked.into_iter().flat_map(judgements).collect()
+}
+
+#[test]
+fn scenes_accuse_no_robot_that_got_lost_or_turned_back_at_an_obstacle() {
+    for (name, fault, why) in [
+        ("shape-6", "lights-out@40:120", Unproved::Lost),
+        ("shape-8", "lights-out@40:120", Unproved::Lost),
+        ("building-12", "lights-out@60:200", Unproved::Lost),
+        ("shape-6", "blocked@20:250", Unproved::Obstacle),
+        ("shape-8", "blocked@20:250", Unproved::Obstacle),
+    ] {
+        let mut contradictions = 0;
+        for seed in 1..4 {
+            for judgement in judged_scenes(name, fault, seed) {
+                let found = (judgement.verdict(), &judgement.divergence);
+                assert!(found.0 != ConformVerdict::Diverged && found.1.is_none(), "{found:?}");
+                let unproved = judgement.contradiction.map(|(_, why)| why);
+                contradictions += usize::from(unproved.is_some());
+                assert!(unproved.is_none_or(|unproved| unproved == why), "{name}, {fault}, {seed}");
+            }
+        }
+        // These scenes alone would accuse it.
+        assert!(contradictions > 12, "{name}, {fault}: {contradictions}");
+    }
+}
+
+#[test]
+fn scenes_accuse_a_robot_that_was_carried_unawares() {
+    let judged = judged_scenes("shape-6", "carried@80", 1);
+    let verdicts: Vec<_> = judged.iter().map(Judgement::verdict).collect();
+    assert!(verdicts.iter().all(|verdict| *verdict == ConformVerdict::Diverged), "{verdicts:?}");
 }

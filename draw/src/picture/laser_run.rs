@@ -2,14 +2,15 @@
 //! in the frame of odometry.
 
 use std::{
-    collections::{BTreeSet, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap},
     fmt::Write as _,
 };
 
 use toposlam_logs::{
     entries::{Content, Entry},
-    record::{EventKind, Frame},
+    record::{EventId, EventKind, Frame},
 };
+use toposlam_model::driving::odometry::Odometry;
 use toposlam_vision::geometry::from_robot;
 
 use super::{
@@ -29,6 +30,8 @@ pub struct LaserRunPicture {
     /// The robot's positions, in metres.
     pub way: Vec<[f64; 2]>,
     pub visits: Vec<DrawnVisit>,
+    /// Where free space is wider than a corridor, in metres, if the building is no network of corridors because of it.
+    pub wide: Vec<[f64; 2]>,
     /// The position of a marker in metres, and the direction in which it points in radians.
     pub marker: Option<([f64; 2], Option<f64>)>,
 }
@@ -38,20 +41,33 @@ pub struct LaserRunPicture {
 pub struct DrawnVisit {
     /// The centre of the junction, in metres.
     pub centre: [f64; 2],
-    /// The directions of the doors, in radians; none if the visit is undecided.
+    /// The directions of the doors, in radians; none if nothing is known of them.
     pub doors: Vec<f64>,
-    /// The index of the door by which the robot left.
-    pub exit: Option<usize>,
+    /// Those of what may be doors.
+    pub possible: Vec<f64>,
+    /// Whether the percept is certain.
+    pub is_certain: bool,
+    /// Whether it has more doors than a junction of corridors, and the building is no network of them because of that.
+    pub is_hall: bool,
+    /// The direction in which the robot left, in radians.
+    pub exit: Option<f64>,
 }
 
 impl LaserRunPicture {
     /// Adds what a scan hit, and where the robot was. An entry without a scan, or without a finite pose, adds nothing.
-    pub fn add(&mut self, entry: Entry) {
+    ///
+    /// In a log without odometry, the pose of each scan is that of its message.
+    pub fn add(&mut self, entry: Entry, poses: &BTreeMap<EventId, Odometry>) {
+        let pose = poses.get(&entry.id).copied();
+        if pose.is_none() && !poses.is_empty() {
+            return;
+        }
         let Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) =
             entry.content
         else {
             return;
         };
+        let odometry = pose.unwrap_or(odometry);
         let [east, north] = odometry.position;
         if [east, north, odometry.heading].iter().all(|number| number.is_finite()) {
             self.way.push(odometry.position);
@@ -112,9 +128,16 @@ const ARM: f64 = 12.0;
 /// The sizes of the fonts.
 const DEGREE: f64 = 12.0;
 const NUMBER: f64 = 11.0;
-/// Visits of junctions with centres nearer than this, in metres, and with the same doors are drawn as one.
+const SMALL: f64 = 8.0;
+/// The dashes of what is only possible.
+const DASHED: &str = " stroke-dasharray=\"3 2\"";
+/// Visits of junctions with centres nearer than this, in metres, are drawn as one: certain ones with as many doors, and those
+/// of which several percepts are possible, with the doors of the first.
 const SAME: f64 = 3.0;
 const WALL: &str = "#9aa1ab";
+/// The colour and the radius of the dots where free space is wider than a corridor.
+const HALL: &str = "#e08a1e";
+const WIDE: f64 = 4.0;
 
 /// Visits of one junction.
 struct VisitedPlace<'v> {
@@ -146,7 +169,11 @@ pub fn laser_run_svg(picture: &LaserRunPicture) -> String {
     sheet.document(&legend, None, |page| {
         write_walls(page, &walls, metre);
         write_way(page, &picture.way.iter().map(|&point| page.at(at(point))).collect::<Vec<_>>());
-        for place in &places {
+        write_wide(page, picture.wide.iter().map(|&point| at(point)));
+        // What is certain lies over what is only possible.
+        let (certain, others): (Vec<_>, Vec<_>) =
+            places.iter().partition(|place| place.visit.is_certain);
+        for place in others.into_iter().chain(certain) {
             place.write(page, at(place.visit.centre));
         }
         if let Some((position, heading)) = picture.marker {
@@ -174,9 +201,11 @@ fn places(visits: &[DrawnVisit]) -> Vec<VisitedPlace<'_>> {
         let [x, y] = visit.centre;
         let is_here = |place: &&mut VisitedPlace| {
             let [u, v] = place.visit.centre;
-            (x - u).hypot(y - v) < SAME && place.visit.doors.len() == visit.doors.len()
+            let is_same = place.visit.is_certain == visit.is_certain
+                && (!visit.is_certain || place.visit.doors.len() == visit.doors.len());
+            (x - u).hypot(y - v) < SAME && is_same
         };
-        let exit = visit.exit.and_then(|exit| visit.doors.get(exit).copied());
+        let exit = visit.exit;
         match places.iter_mut().find(is_here) {
             Some(place) => place.numbers.push((number, exit)),
             None => places.push(VisitedPlace { visit, numbers: vec![(number, exit)] }),
@@ -191,8 +220,18 @@ fn legend(picture: &LaserRunPicture) -> Vec<String> {
         "in a circle: the number of doors, with a stroke towards each".to_owned(),
         "at a stroke: the numbers of the visits after which the robot left there".to_owned(),
     ];
-    if picture.visits.iter().any(|visit| visit.doors.is_empty()) {
-        lines.push("a question mark: a visit that is undecided".to_owned());
+    let any = |what: fn(&DrawnVisit) -> bool| picture.visits.iter().any(what);
+    if any(|visit| !visit.possible.is_empty()) {
+        lines.push("a dashed stroke: what may be a door".to_owned());
+    }
+    if any(|visit| !visit.is_certain) {
+        lines.push("a dashed circle: a visit of which several percepts are possible".to_owned());
+    }
+    if any(|visit| visit.is_hall) {
+        lines.push("a red circle: more doors than a junction of corridors has".to_owned());
+    }
+    if !picture.wide.is_empty() {
+        lines.push("orange: free space is wider than a corridor".to_owned());
     }
     if picture.marker.is_some() {
         lines.push("red arrow or ring: the marker".to_owned());
@@ -241,6 +280,23 @@ fn write_way(page: &mut Page, points: &[Point]) {
     page.line("</g>");
 }
 
+/// Where free space is wider than a corridor: a dot at each place that is some way from the last one.
+fn write_wide(page: &mut Page, places: impl Iterator<Item = Point>) {
+    let mut last: Option<Point> = None;
+    for place in places {
+        if last.is_some_and(|last| (last.x - place.x).hypot(last.y - place.y) < WIDE) {
+            continue;
+        }
+        last = Some(place);
+        page.circle(
+            "class=\"wide\"",
+            place,
+            WIDE,
+            &format!("fill=\"{HALL}\" fill-opacity=\"0.55\""),
+        );
+    }
+}
+
 /// The marker: an arrow, or a ring if it points nowhere.
 fn write_marker(page: &mut Page, at: Point, heading: Option<f64>) {
     let Some(heading) = heading else {
@@ -258,23 +314,34 @@ fn write_marker(page: &mut Page, at: Point, heading: Option<f64>) {
 impl VisitedPlace<'_> {
     fn write(&self, page: &mut Page, at: Point) {
         let Self { visit, numbers } = self;
-        for &door in &visit.doors {
+        let certain = visit.doors.iter().map(|&door| (door, "arm", ""));
+        let possible = visit.possible.iter().map(|&door| (door, "possible", DASHED));
+        for (door, class, dashes) in certain.chain(possible) {
             let along = Point::polar(-door, 1.0);
             let [from, to] = [DISC, DISC + ARM].map(|length| page.at(at + along * length));
-            let stroke = format!("stroke=\"{INK}\" stroke-width=\"2.4\"");
-            page.path("class=\"arm\"", &format!("M{from}L{to}"), &stroke);
+            let ink = if dashes.is_empty() { INK } else { FAINT };
+            let stroke = format!("stroke=\"{ink}\" stroke-width=\"2.4\"{dashes}");
+            page.path(&format!("class=\"{class}\""), &format!("M{from}L{to}"), &stroke);
         }
-        let (sign, ink) = match visit.doors.len() {
-            0 => ("?".to_owned(), MARKER),
-            degree => (degree.to_string(), INK),
+        let least = visit.doors.len();
+        let sign = match visit.possible.len() {
+            _ if visit.is_certain => least.to_string(),
+            0 => "?".to_owned(),
+            more => format!("{least}–{}", least + more),
         };
-        let look = format!("fill=\"{PAPER}\" stroke=\"{ink}\" stroke-width=\"1.8\"");
+        let (ink, dashes) = match visit.is_certain {
+            _ if visit.is_hall => (MARKER, ""),
+            true => (INK, ""),
+            false => (FAINT, DASHED),
+        };
+        let look = format!("fill=\"{PAPER}\" stroke=\"{ink}\" stroke-width=\"1.8\"{dashes}");
         page.circle("class=\"junction\"", at, DISC, &look);
-        page.text(&sign, at + Point::new(0.0, DEGREE * 0.36), DEGREE, ink, "degree");
-        let ends =
-            visit.doors.iter().map(|&door| (Some(door), at + Point::polar(-door, DISC + ARM)));
+        let size = if sign.chars().count() > 1 { SMALL } else { DEGREE };
+        page.text(&sign, at + Point::new(0.0, size * 0.36), size, ink, "degree");
+        let all: Vec<f64> = visit.doors.iter().chain(&visit.possible).copied().collect();
+        let ends = all.iter().map(|&door| (Some(door), at + Point::polar(-door, DISC + ARM)));
         for (door, end) in ends.chain([(None, at + Point::new(0.0, DISC + 2.0))]) {
-            let left = numbers.iter().filter(|(_, exit)| nearest(&visit.doors, *exit) == door);
+            let left = numbers.iter().filter(|(_, exit)| nearest(&all, *exit) == door);
             let list: Vec<_> = left.map(|(number, _)| number.to_string()).collect();
             if list.is_empty() {
                 continue;
@@ -324,17 +391,32 @@ mod tests {
         }
         // A person: nothing else was hit near them.
         hits.add([5.0, 0.0]);
-        let visit = |centre, exit| DrawnVisit { centre, doors: vec![PI, FRAC_PI_2, 0.0], exit };
+        let visit = |centre, exit| DrawnVisit {
+            centre,
+            doors: vec![PI, FRAC_PI_2, 0.0],
+            possible: Vec::new(),
+            is_certain: true,
+            is_hall: false,
+            exit,
+        };
         LaserRunPicture {
             title: "a <log>".to_owned(),
             caption: "conforms".to_owned(),
             hits,
             way: vec![[1.0, 0.0], [10.0, 0.0], [10.0, 5.0], [10.0, 0.0], [19.0, 0.0]],
             visits: vec![
-                visit([10.0, 0.0], Some(1)),
-                visit([10.5, 0.5], Some(2)),
-                DrawnVisit { doors: Vec::new(), exit: None, ..visit([15.0, 0.0], None) },
+                visit([10.0, 0.0], Some(FRAC_PI_2)),
+                visit([10.5, 0.5], Some(0.1)),
+                DrawnVisit { doors: Vec::new(), is_certain: false, ..visit([14.0, 0.0], None) },
+                DrawnVisit {
+                    doors: vec![PI, 0.0],
+                    possible: vec![FRAC_PI_2],
+                    is_certain: false,
+                    is_hall: true,
+                    ..visit([18.0, 0.0], Some(0.0))
+                },
             ],
+            wide: vec![[2.0, 0.0], [2.01, 0.0], [4.0, 0.0]],
             marker: Some(([10.0, 0.0], Some(PI))),
         }
     }
@@ -346,14 +428,21 @@ mod tests {
         let document = Document::parse(&svg).unwrap();
         let texts =
             |class| of_class(&document, class).iter().filter_map(Node::text).collect::<Vec<_>>();
-        assert_eq!(texts("degree"), ["3", "?"]);
-        assert_eq!(texts("visits"), ["1", "2", "3"]);
-        assert_eq!(of_class(&document, "arm").len(), 3);
+        assert_eq!(texts("degree"), ["?", "2–3", "3"]);
+        assert_eq!(texts("visits"), ["3", "4", "1", "2"]);
+        assert_eq!(of_class(&document, "arm").len(), 5);
+        // What is only possible is dashed.
+        let dashed = |node: &Node<'_, '_>| node.attribute("stroke-dasharray").is_some();
+        let possible = of_class(&document, "possible");
+        assert!(possible.len() == 1 && possible.iter().all(dashed));
+        let discs: Vec<_> = of_class(&document, "junction").iter().map(dashed).collect();
+        assert_eq!(discs, [true, false, false]);
+        assert_eq!(of_class(&document, "wide").len(), 2);
         assert_eq!(of_class(&document, "marker").len(), 1);
         assert_eq!(texts("title"), ["a <log>"]);
         // The first visit left by the stem, which is above the disc.
-        let disc = of_class(&document, "junction")[0];
-        let first = of_class(&document, "visits")[0];
+        let disc = of_class(&document, "junction")[2];
+        let first = of_class(&document, "visits")[2];
         assert!(number(first, "y") < number(disc, "cy"));
         assert!((number(first, "x") - number(disc, "cx")).abs() < 1.0);
     }

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use toposlam_conform::{
-    CheckError, CheckedLog, Evidence, ExtractError, JudgeError, LogCheck, MarkerPlaceError, Quirks,
-    RESUMED_REMARK, RobotStart, SightingError,
+    CheckError, CheckedLog, Evidence, ExtractError, JudgeError, LogCheck, LogHead,
+    MarkerPlaceError, Quirks, RESUMED_REMARK, RobotStart, SightingError,
 };
 use toposlam_model::{folding::WorldSearch, format::named_world::NamedWorld};
 
@@ -41,9 +41,11 @@ impl ConformArguments {
         let opened = OpenLog::new(path, &self.sources)?;
         let evidence = self.evidence(path, &opened)?;
         self.laser.check_used(evidence)?;
+        let settings = LogHead(opened.run.as_ref()).settings(None);
+        let recorded = settings.ok().and_then(|settings| settings.laser);
         let check = LogCheck {
             evidence,
-            laser: self.laser.params()?,
+            laser: self.laser.params(recorded)?,
             world,
             start: self.robot_start(),
             marker: self.marker,

@@ -2,10 +2,13 @@
 
 use std::path::Path;
 
-use toposlam_conform::{
-    AddedMarker, CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction,
-};
+use toposlam_conform::{AddedMarker, ConformVerdict, Evidence, ExtractedRun, VisitedJunction};
 use toposlam_logs::topic_map::Role;
+use toposlam_vision::{
+    laser::params::NetworkParams,
+    place::{Certainty, PlaceArm},
+    visits::network_fit::NetworkFault,
+};
 
 use super::{CliError, JudgedLog};
 use crate::{
@@ -20,7 +23,11 @@ pub(super) fn write(path: &Path, log: &Path, judged: &JudgedLog) -> Result<(), C
         return Err(CliError::at("--picture", cause));
     }
     let mut picture = scanned(log, judged)?;
-    picture.visits = visits(&judged.checked.extracted.events, &judged.checked.extracted.junctions);
+    let extracted = &judged.checked.extracted;
+    picture.visits = visits(extracted);
+    if extracted.network.is_some_and(|network| network.fault == Some(NetworkFault::Wide)) {
+        picture.wide.clone_from(&extracted.wide);
+    }
     let name = log.file_name().unwrap_or(log.as_os_str()).to_string_lossy();
     name.trim_end_matches(".gz").trim_end_matches(".log").clone_into(&mut picture.title);
     let verdict = match judged.checked.judgement.verdict() {
@@ -45,20 +52,32 @@ fn scanned(path: &Path, judged: &JudgedLog) -> Result<LaserRunPicture, CliError>
     let bound = mapping.bind(log).map_err(|error| failed(&error))?;
     let mut picture = LaserRunPicture::default();
     for entry in log.entries(&bound) {
-        picture.add(entry.map_err(|error| failed(&error))?);
+        picture.add(entry.map_err(|error| failed(&error))?, &judged.checked.extracted.poses);
     }
     Ok(picture)
 }
 
-/// The visits, with the door of each.
-fn visits(events: &RunEvents, junctions: &[VisitedJunction]) -> Vec<DrawnVisit> {
-    let visit = |junction: &VisitedJunction| {
-        let VisitedJunction { event, centre, ref doors, .. } = *junction;
-        let exit = match events.events.get(event + 1).map(|event| &event.kind) {
-            Some(CheckedKind::Door { door, .. }) => Some(door.0 as usize),
-            _ => None,
+/// The visits, with what is certain and what is possible of each.
+fn visits(run: &ExtractedRun) -> Vec<DrawnVisit> {
+    let has_halls =
+        run.network.is_some_and(|network| network.fault == Some(NetworkFault::ManyDoors));
+    let many_doors = NetworkParams::DEFAULT.many_doors;
+    let visit = |(junction, arms): (&VisitedJunction, &Vec<PlaceArm>)| {
+        let VisitedJunction { centre, ref doors, ref alternatives, exit, .. } = *junction;
+        let of = |certainty| {
+            let arms = arms.iter().filter(move |arm| arm.certainty == certainty);
+            arms.map(|arm| arm.direction).collect::<Vec<_>>()
         };
-        DrawnVisit { centre, doors: doors.clone(), exit }
+        let is_certain = !doors.is_empty();
+        let most = alternatives.iter().flatten().map(|seen| seen.degree).max();
+        DrawnVisit {
+            centre,
+            doors: if is_certain { doors.clone() } else { of(Certainty::Certain) },
+            possible: if is_certain { Vec::new() } else { of(Certainty::Possible) },
+            is_certain,
+            is_hall: has_halls && most.is_some_and(|most| most as usize >= many_doors),
+            exit,
+        }
     };
-    junctions.iter().map(visit).collect()
+    run.junctions.iter().zip(&run.arms).map(visit).collect()
 }

@@ -39,7 +39,7 @@ impl ConformArguments {
         let begun = Instant::now();
         let head = LogHead(opened.run.as_ref());
         let settings = head.settings(self.algorithm);
-        let RecordedSettings { method, budget, is_resumed, dart_bound } =
+        let RecordedSettings { method, budget, is_resumed, dart_bound, .. } =
             settings.map_err(|head| {
                 let cause = format!("its algorithm `{head}` is unknown; use --algorithm");
                 CliError::in_file(log, cause)

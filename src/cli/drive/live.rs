@@ -25,6 +25,8 @@ impl DriveArguments {
         self.options.check_places(false)?;
         let settings = self.options.settings(None)?;
         let sensors = self.sensors()?;
+        let laser = sensors.is_none().then_some(LaserVertices::OF_HALLWAYS);
+        let settings = RunSettings { laser, ..settings };
         let (sensor, live, frame_kind) = match &sensors {
             Some((camera, colours)) => {
                 let sensor = Box::new(Sensor::new(camera, colours));

@@ -3,13 +3,12 @@
 use std::{io::Write, path::Path};
 
 use serde::Serialize;
-use toposlam_conform::Evidence;
 use toposlam_logs::{
     entries::Content,
     record::{EventKind, Frame},
     topic_map::{Role, TopicMap},
 };
-use toposlam_model::enumerate::Watch;
+use toposlam_model::{driving::scene::wrapped, enumerate::Watch};
 use toposlam_vision::{
     geometry::from_robot,
     laser::{local_map::LocalMap, pictures, scan::Scan, sensor::LaserSensor},
@@ -47,10 +46,11 @@ impl JunctionLine {
     fn new(junction: &SeenPlace, view: &PlaceView) -> Self {
         let robot_from_map = from_robot(&view.robot).inverse();
         let door = |arm: f64| rounded_angle(view.robot.seen(arm), std::f64::consts::PI);
+        let doors: Vec<f64> = separate(junction).into_iter().map(door).collect();
         Self {
-            degree: junction.arms.len(),
+            degree: doors.len(),
             position: (robot_from_map * junction.centre).map(rounded).into(),
-            doors: junction.directions().map(door).collect(),
+            doors,
         }
     }
 
@@ -67,6 +67,22 @@ impl JunctionLine {
     }
 }
 
+/// The directions of the arms of a place. Two ways around something that stands in an arm leave in one direction, and are one
+/// door.
+fn separate(place: &SeenPlace) -> Vec<f64> {
+    let mut doors: Vec<f64> = Vec::new();
+    for door in place.directions() {
+        if doors.iter().all(|known| wrapped(known - door).abs() >= ONE_DOOR) {
+            doors.push(door);
+        }
+    }
+    doors
+}
+
+/// Arms that are nearer to each other than this are one door, in radians. Geometry: under half of the angle between two arms
+/// of a junction with eight.
+const ONE_DOOR: f64 = 0.35;
+
 impl SenseArguments {
     /// Senses the scans of a log, and prints what is seen whenever the robot has moved on.
     pub(super) fn sense_scans(&self, path: &Path, out: &mut dyn Write) -> Result<(), CliError> {
@@ -77,7 +93,7 @@ impl SenseArguments {
             Some(file) => TopicMap::read(&input::read(file)?)
                 .map_err(|error| CliError::in_file(file, error))?,
         };
-        if !Evidence::Laser.is_in(&topics) {
+        if topics.carrier(Role::Scan).is_none() || topics.carrier(Role::Odometry).is_none() {
             return Err(wrong(&"this is no image, and no log with laser scans and odometry"));
         }
         let bound = topics.only(&[Role::Scan, Role::Odometry]).bind(&log);
@@ -85,7 +101,8 @@ impl SenseArguments {
         if !self.json {
             writeln!(out, "{}", path.display())?;
         }
-        let mut sensor = LaserSensor::new(self.laser.params()?);
+        let params = self.laser.params(None)?;
+        let mut sensor = LaserSensor::new(params);
         let mut number = 0;
         for entry in log.entries(&bound) {
             StopSignal.check_stop()?;
@@ -105,7 +122,7 @@ impl SenseArguments {
                 continue;
             }
             let stamp = entry.stamp.nanoseconds() as f64 / 1e9;
-            self.print_scan(path, scan_number, stamp, &view, out)?;
+            self.print_scan((path, scan_number, stamp), &view, params.corner.corners, out)?;
             self.write_stages(path, scan_number, &view, sensor.map(), &scan)?;
         }
         match self.scans {
@@ -119,14 +136,16 @@ impl SenseArguments {
 
     fn print_scan(
         &self,
-        path: &Path,
-        scan: u64,
-        stamp: f64,
+        (path, scan, stamp): (&Path, u64, f64),
         view: &PlaceView,
+        corners: bool,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
+        // A corridor that passes something on both sides is no junction.
+        let is_vertex =
+            |junction: &JunctionLine| corners && junction.degree > 0 || junction.degree >= 3;
         let line = |junction: &SeenPlace| JunctionLine::new(junction, view);
-        let mut junctions: Vec<_> = view.places.iter().map(line).collect();
+        let mut junctions: Vec<_> = view.places.iter().map(line).filter(is_vertex).collect();
         let far = |junction: &JunctionLine| junction.position[0].hypot(junction.position[1]);
         junctions.sort_by(|one, other| far(one).total_cmp(&far(other)));
         if self.json {

@@ -24,9 +24,10 @@ pub(super) struct ScanMatcher {
     last: Option<[Odometry; 2]>,
 }
 
+/// A point of a scan on a straight wall.
 #[derive(Clone, Copy, Debug)]
-struct WallPoint {
-    point: Point2<f64>,
+pub(super) struct WallPoint {
+    pub(super) point: Point2<f64>,
     /// The unit vector across the wall, to the side from which it was seen.
     normal: Vector2<f64>,
     /// The length of the robot's way when it was seen, in metres.
@@ -58,35 +59,52 @@ impl ScanMatcher {
         if self.params.rounds == 0 {
             return *odometry;
         }
-        let points = wall_points(scan, &self.params, way);
+        let points = self.wall_points(scan, way);
         let predicted = moved(&self.correction(), odometry);
-        let pose = match &self.last {
-            Some([last, _]) => self.matched(&points, &predicted, last, odometry),
-            None => predicted,
-        };
+        let pose = self.last.and_then(|[last, _]| {
+            self.matched(&points, &predicted, self.deviation(&last, odometry))
+        });
+        let pose = pose.unwrap_or(predicted);
         self.last = Some([*odometry, pose]);
-        for points in self.walls.values_mut() {
-            points.retain(|point| point.way >= forgotten);
-        }
-        self.walls.retain(|_, points| !points.is_empty());
+        self.forget(forgotten);
         self.add(&points, &pose);
         pose
     }
 
-    fn matched(
-        &self,
-        points: &[WallPoint],
-        predicted: &Odometry,
-        last: &Odometry,
-        odometry: &Odometry,
-    ) -> Odometry {
+    /// The points of a scan on straight walls, in the robot's frame, with the length of the robot's way until then, in
+    /// metres.
+    pub(super) fn wall_points(&self, scan: &Scan, way: f64) -> Vec<WallPoint> {
+        wall_points(scan, &self.params, way)
+    }
+
+    /// Forgets walls that were last seen before a length of the robot's way, in metres.
+    pub(super) fn forget(&mut self, forgotten: f64) {
+        for points in self.walls.values_mut() {
+            points.retain(|point| point.way >= forgotten);
+        }
+        self.walls.retain(|_, points| !points.is_empty());
+    }
+
+    /// The standard deviation of odometry between two scans, in metres and in radians.
+    fn deviation(&self, last: &Odometry, odometry: &Odometry) -> [f64; 2] {
         let params = &self.params;
         let driven = last.distance(odometry);
         let turned = last.seen(odometry.heading).abs();
-        let deviation = [
+        [
             params.shift + params.shift_per_metre * driven,
             params.turn + params.turn_per_metre * driven + params.turn_per_radian * turned,
-        ];
+        ]
+    }
+
+    /// The pose at which the points of a scan lie on the walls that are known, near a predicted one with a standard
+    /// deviation in metres and in radians; `None` if they match too few, or far off.
+    pub(super) fn matched(
+        &self,
+        points: &[WallPoint],
+        predicted: &Odometry,
+        deviation: [f64; 2],
+    ) -> Option<Odometry> {
+        let params = &self.params;
         let mut pose = *predicted;
         for round in 0..params.rounds {
             let part = (round + 1) as f64 / params.rounds as f64;
@@ -111,9 +129,9 @@ impl ScanMatcher {
                 equations.add(weight, [wall.x, wall.y, lever], across);
             }
             if matches < params.min_matches {
-                return *predicted;
+                return None;
             }
-            let Some([east, north, turn]) = equations.solve() else { return *predicted };
+            let [east, north, turn] = equations.solve()?;
             pose = Odometry {
                 position: [pose.position[0] + east, pose.position[1] + north],
                 heading: pose.whither(turn),
@@ -123,7 +141,17 @@ impl ScanMatcher {
         let is_near = predicted.distance(&pose) <= shift
             && predicted.seen(pose.heading).abs() <= turn
             && pose.heading.is_finite();
-        if is_near { pose } else { *predicted }
+        is_near.then_some(pose)
+    }
+
+    /// The part of the points of a scan that lie on walls that are known, for a robot at a pose.
+    pub(super) fn part_on_walls(&self, points: &[WallPoint], pose: &Odometry) -> f64 {
+        let map_from_robot = from_robot(pose);
+        let on_wall = |point: &&WallPoint| {
+            let (at, normal) = (map_from_robot * point.point, map_from_robot * point.normal);
+            self.nearest(at, normal, self.params.gate).is_some()
+        };
+        points.iter().filter(on_wall).count() as f64 / points.len().max(1) as f64
     }
 
     /// The normal of the wall on which a point lies, seen from the same side, and the distance to it along
@@ -150,7 +178,7 @@ impl ScanMatcher {
     }
 
     /// Adds points of walls, in the robot's frame, where there are none yet.
-    fn add(&mut self, points: &[WallPoint], pose: &Odometry) {
+    pub(super) fn add(&mut self, points: &[WallPoint], pose: &Odometry) {
         let map_from_robot = from_robot(pose);
         for &WallPoint { point, normal, way } in points {
             let (point, normal) = (map_from_robot * point, map_from_robot * normal);

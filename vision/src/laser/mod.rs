@@ -4,7 +4,7 @@
 //!
 //! * [`params`]: what a user may change for a building;
 //! * [`scan`]: one sweep of the scanner;
-//! * `matching`: where it was taken, by odometry and by the walls of earlier scans;
+//! * `matching`: where it was taken, by odometry and by the walls of earlier scans, and [`scan_motion`]: without odometry;
 //! * [`drift`]: how much the heading of odometry drifts;
 //! * `grid`: the local map, of the cells where rays of the last scans have passed and ended;
 //! * `clearances`: the distance of each cell to the nearest wall, and lines of sight;
@@ -34,6 +34,7 @@ mod ray_counts;
 pub mod scan;
 mod scan_choice;
 pub mod scan_log;
+pub mod scan_motion;
 pub mod scene;
 pub mod sensor;
 mod skeleton;
