@@ -8,6 +8,7 @@ use toposlam_robot::{
     explorer::{ExplorerError, RobotExplorer},
     robot::{Robot, RobotError},
     ros1::{LiveRobot, LiveSensor, RobotTopics},
+    run_settings::{LaserVertices, RunSettings},
 };
 use toposlam_vision::{camera::Camera, colour::ColourModel, sensing::Sensor};
 

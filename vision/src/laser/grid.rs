@@ -151,7 +151,9 @@ impl Grid {
         let occupied = self.obstacles(row, |cell| cell == Cell::Occupied);
         let mut is_in_row = vec![false; self.cells.len()];
         for obstacle in in_rows(&occupied, gap, row as f64) {
-            obstacle.cells.iter().for_each(|&at| is_in_row[at] = true);
+            for &at in &obstacle.cells {
+                is_in_row[at] = true;
+            }
         }
         for Obstacle { cells, .. } in self.obstacles(small, |cell| cell != Cell::Free) {
             if !cells.iter().any(|&at| is_in_row[at]) {
@@ -284,7 +286,9 @@ fn in_rows(obstacles: &[Obstacle], gap: f64, length: f64) -> impl Iterator<Item 
             let filled: f64 =
                 row.iter().map(|&number| obstacles[number].along(&along.normalize())).sum();
             if along.norm() >= length && filled >= FILLED * along.norm() {
-                row.into_iter().for_each(|obstacle| in_rows[obstacle] = true);
+                for obstacle in row {
+                    in_rows[obstacle] = true;
+                }
             }
         }
     }
