@@ -196,15 +196,15 @@ impl LogCheck<'_> {
             ExtractedRun {
                 evidence: Evidence::Laser,
                 junctions,
-                proved,
+                driven,
                 network,
                 matched_scans,
                 ..
             } => {
                 // Whether a corridor bends enough for a corner is no fact, nor is the motion between scans.
-                let is_fact = !self.laser.corner.corners && matched_scans.is_none();
-                let proved = proved.as_ref().filter(|_| is_fact);
-                let possible = PossibleVisits::judge(&complete, junctions, proved, &config, watch)
+                let is_known = !self.laser.corner.corners && matched_scans.is_none();
+                let driven = driven.as_ref().filter(|_| is_known);
+                let possible = PossibleVisits::judge(&complete, junctions, driven, &config, watch)
                     .in_building(network.unwrap_or_default())
                     .by_scans(*matched_scans);
                 judgement.with_possible(possible)

@@ -113,7 +113,7 @@ pub enum DivergenceCause {
     })]
     World(Misfit),
     #[error("the known world fits no choice of what was driven or seen to end up to here")]
-    Proved,
+    Driven,
     #[error("no world of any size explains the log up to here: {why}")]
     NoWorld { event: TraceEvent, why: Impossibility },
     #[error("{}", departed(.0))]
@@ -159,7 +159,7 @@ impl DivergenceCause {
             Self::Measurement { .. } => ("moved", Motion),
             Self::Return { .. } => ("return", Perception),
             Self::Undecided(_) => ("undecided", Perception),
-            Self::Proved => ("proved", Perception),
+            Self::Driven => ("driven", Perception),
             Self::World(misfit) => by_kind(&misfit.event, "percept", "no-such-door"),
             Self::NoWorld { event, .. } => by_kind(event, "no-world", "no-world"),
             Self::Algorithm(departure) => by_kind(&departure.event, "contradiction", "door"),
@@ -183,7 +183,7 @@ pub(super) const NAMES: [&str; 20] = [
     "shape",
     "return",
     "undecided",
-    "proved",
+    "driven",
     "percept",
     "no-such-door",
     "no-world",

@@ -26,7 +26,7 @@ use toposlam_vision::{
     place::{PlaceArm, PlaceView},
     sensing::Sensor,
     visits::{
-        APPROACH_RANGE, VisitLog, Visits, logged_visits, network_fit::NetworkFit, proved_visits,
+        APPROACH_RANGE, VisitLog, Visits, driven_visits, logged_visits, network_fit::NetworkFit,
     },
 };
 
@@ -39,7 +39,7 @@ use super::{
     placed_scenes::{PlacedScenes, SceneClockError, SensedScene},
     scan_odometry::{PlacedScan, ScanOdometry, StampCounts},
     scan_track::{MatchedScans, ScanTrack, UnmatchedScan},
-    visit_events::visit_events,
+    visit_events::{DrivenVisits, visit_events},
 };
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -93,8 +93,8 @@ pub struct ExtractedRun {
     pub network: Option<NetworkFit>,
     /// The junctions of the events that are inferred from laser scans.
     pub junctions: Vec<VisitedJunction>,
-    /// The same visits by what the scans prove; `None` if they prove nothing.
-    pub proved: Option<ProvedVisits>,
+    /// The same visits by what was driven or is seen to end; `None` if that is not known.
+    pub driven: Option<DrivenVisits>,
     /// The arms that are seen at each of them, clockwise from the entry door.
     pub arms: Vec<Vec<PlaceArm>>,
     /// Where free space is wider than a corridor, in metres in the frame of odometry.
@@ -106,13 +106,6 @@ pub struct ExtractedRun {
     /// Why events that are inferred from scenes or images accuse nobody: the log records that the robot recovered, which
     /// they do not show.
     pub unproved: Option<Unproved>,
-}
-
-/// Visits by what was driven or is seen to end, with their events.
-#[derive(Clone, Debug, Default)]
-pub struct ProvedVisits {
-    pub(crate) events: Vec<CheckedEvent>,
-    pub(crate) junctions: Vec<VisitedJunction>,
 }
 
 /// The number of messages that were skipped when events were inferred, by the reason.
@@ -294,15 +287,12 @@ pub fn extract(
             if run.matched_scans.is_some() {
                 run.poses.clone_from(&scans.poses);
             }
-            let SensedLog { visits, proved, drift, network, wide } = scans.visits(watch);
+            let SensedLog { visits, driven, drift, network, wide } = scans.visits(watch);
             run.arms = visits.visits.iter().map(|visit| visit.arms.clone()).collect();
             let (events, junctions) = visit_events(visits);
             (run.junctions, run.drift, run.network, run.wide) =
                 (junctions, drift, Some(network), wide);
-            run.proved = proved.map(|visits| {
-                let (events, junctions) = visit_events(visits);
-                ProvedVisits { events, junctions }
-            });
+            run.driven = driven.map(DrivenVisits::new);
             events
         }
     };
@@ -312,8 +302,8 @@ pub fn extract(
 /// What the scans of a log show.
 struct SensedLog {
     visits: VisitLog<EventSource>,
-    /// The visits by what the scans prove, if they do.
-    proved: Option<VisitLog<EventSource>>,
+    /// The visits by what was driven or is seen to end, if that is known.
+    driven: Option<VisitLog<EventSource>>,
     /// The drift of the heading of odometry in 10 m, in radians, if scans are matched because of it.
     drift: Option<f64>,
     /// Whether the building is a network of corridors.
@@ -352,13 +342,13 @@ impl LoggedScans {
             done = scans;
         }
         let visits = logged_visits(&log, &views, |scan| self.sources[scan]);
-        let proved = proved_visits(&log, &views, |scan| self.sources[scan]);
+        let driven = driven_visits(&log, &views, |scan| self.sources[scan]);
         let params = &log.params().network;
         let network = NetworkFit::new(&views, &visits, params);
         let is_wide = |view: &&PlaceView| view.width.is_some_and(|width| width > params.widest);
         let place = |view: &PlaceView| moved(&view.odometry_from_map, &view.robot).position;
         let wide = views.iter().filter(is_wide).map(place).collect();
-        SensedLog { visits, proved, drift: log.drift(), network, wide }
+        SensedLog { visits, driven, drift: log.drift(), network, wide }
     }
 }
 

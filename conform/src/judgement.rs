@@ -118,6 +118,8 @@ pub enum JudgeError {
 pub enum Unproved {
     /// Scans may show an arm wrongly where the robot did not drive.
     Scans,
+    /// By odometry that drifts, a pass lies beside the place that it is of.
+    Poses,
     /// The robot got lost, which events that are inferred do not show.
     Lost,
     /// The robot turned back at an obstacle as from a dead end, which events that are inferred do not show.
@@ -410,17 +412,16 @@ impl Judgement {
     pub(super) fn with_possible(self, possible: PossibleVisits) -> Self {
         // Without the visits that are not certain, what the others show is no world; nor is a hall.
         let is_certain = self.unrecognised.is_none() && possible.network.fault.is_none();
-        let divergence = possible.refuted.map(|time| {
+        let refuted = possible.refuted.map(|time| {
             let events = &self.events.events;
             let event = events.iter().position(|event| event.source.time >= time);
-            let cause = DivergenceCause::Proved;
+            let cause = DivergenceCause::Driven;
             let event = event.unwrap_or(events.len());
-            Divergence { event, fault: cause.fault(), cause }
+            (Divergence { event, fault: cause.fault(), cause }, Unproved::Poses)
         });
         let judgement = self.accusing_nobody(Unproved::Scans);
         Self {
-            contradiction: judgement.contradiction.filter(|_| divergence.is_none()),
-            divergence,
+            contradiction: refuted.or(judgement.contradiction),
             possible: Some(possible),
             determined: judgement.determined.filter(|_| is_certain),
             smallest: judgement.smallest.filter(|_| is_certain),

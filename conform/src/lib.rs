@@ -47,8 +47,7 @@ pub use events::{
     CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, SightingError, UndecidedCause,
 };
 pub use extract::{
-    Evidence, ExtractConfig, ExtractError, ExtractedRun, ProvedVisits, SkippedMessages, extract,
-    infer_events,
+    Evidence, ExtractConfig, ExtractError, ExtractedRun, SkippedMessages, extract, infer_events,
 };
 pub use impossible::Impossibility;
 pub use json::LogsLine;
@@ -75,4 +74,4 @@ pub use report::{
 pub use scan_track::{MatchedScans, UnmatchedScan};
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};
 pub use twin::TwinWorld;
-pub use visit_events::visit_events;
+pub use visit_events::{DrivenVisits, visit_events};

@@ -1,8 +1,8 @@
 //! The visits of a laser log, judged as sets of what the scans cannot exclude. Section 2.1.
 //!
-//! That an arm is there is a fact if the robot drove it, and that it is not if a way is seen to end. What scans show beyond
-//! that may be wrong in one visit of many, so it may support that a log conforms, and accuses nobody. A log is accused only if
-//! what is [proved](ProvedVisits) fits no choice in the known world either.
+//! What scans show may be wrong in one visit of many, so it may support that a log conforms, and accuses nobody. If it fits no
+//! choice in the known world, it is compared once more by what was [driven](DrivenVisits) or is seen to end alone. That accuses
+//! nobody either: a pass may lie beside the place that it is of, where odometry drifts.
 
 use serde::Serialize;
 use toposlam_model::{
@@ -19,10 +19,10 @@ use toposlam_vision::visits::{VisitPercept, network_fit::NetworkFit};
 use super::{
     config::{ConformConfig, RunDriver},
     events::{CheckedEvent, CheckedKind, RunEvents, UndecidedCause},
-    extract::ProvedVisits,
     known_world::KnownWorld,
     marked_visits::VisitedJunction,
     scan_track::MatchedScans,
+    visit_events::DrivenVisits,
 };
 
 /// The visits of a log, and whether some choice of their percepts fits.
@@ -36,7 +36,7 @@ pub struct PossibleVisits {
     pub fit: VisitFit,
     /// Whether the building is a network of corridors at all.
     pub network: NetworkFit,
-    /// The time of the visit up to which no choice of what is proved fits the known world, in nanoseconds.
+    /// The time of the visit up to which the known world fits no choice of what was driven or is seen to end, in nanoseconds.
     #[serde(skip)]
     pub(super) refuted: Option<u64>,
     /// Whether the log has no odometry, and scans too far apart to show where the robot drove.
@@ -77,7 +77,7 @@ impl PossibleVisits {
     pub(super) fn judge(
         events: &RunEvents,
         junctions: &[VisitedJunction],
-        proved: Option<&ProvedVisits>,
+        driven: Option<&DrivenVisits>,
         config: &ConformConfig,
         watch: &dyn Watch,
     ) -> Self {
@@ -99,7 +99,7 @@ impl PossibleVisits {
             let fits = sets.is_empty() || !judged.states.is_empty();
             judged.fit = if fits { VisitFit::Fits } else { VisitFit::Contradiction };
             if !fits {
-                judged.refuted = proved.and_then(|proved| refuted(proved, known, config.marker));
+                judged.refuted = driven.and_then(|driven| refuted(driven, known, config.marker));
             }
             let left = alternatives_left(graph, &config.marker, states, &sets);
             let is_decided = |set: usize| left[set].len() == 1 && !sets[set].is_certain();
@@ -118,7 +118,7 @@ impl PossibleVisits {
         judged
     }
 
-    /// The visits of a building that is no network of corridors prove nothing.
+    /// The visits of a building that is no network of corridors show nothing.
     pub(super) fn in_building(self, network: NetworkFit) -> Self {
         let refuted = self.refuted.filter(|_| network.fault.is_none());
         Self { network, refuted, ..self }
@@ -160,9 +160,9 @@ fn has_unseen_way(events: &[CheckedEvent]) -> bool {
     events.iter().any(|event| event.kind == unseen_way)
 }
 
-/// The time of the visit up to which no choice of what is proved fits a world, in nanoseconds.
-fn refuted(proved: &ProvedVisits, known: &KnownWorld, marker: &dyn Marker) -> Option<u64> {
-    let ProvedVisits { events, junctions } = proved;
+/// The time of the visit up to which a world fits no choice of what was driven or is seen to end, in nanoseconds.
+fn refuted(driven: &DrivenVisits, known: &KnownWorld, marker: &dyn Marker) -> Option<u64> {
+    let DrivenVisits { events, junctions } = driven;
     if has_unseen_way(events) {
         return None;
     }

@@ -10,6 +10,20 @@ use super::{
     marked_visits::VisitedJunction,
 };
 
+/// Visits by what was driven or is seen to end, with their events.
+#[derive(Clone, Debug, Default)]
+pub struct DrivenVisits {
+    pub(crate) events: Vec<CheckedEvent>,
+    pub(crate) junctions: Vec<VisitedJunction>,
+}
+
+impl DrivenVisits {
+    pub(crate) fn new(log: VisitLog<EventSource>) -> Self {
+        let (events, junctions) = visit_events(log);
+        Self { events, junctions }
+    }
+}
+
 /// The events of visits, and the junctions of those that are arrivals or undecided. They are in order by construction: the
 /// time of an event that belongs to an earlier view than the one before it is that of the one before.
 pub fn visit_events(log: VisitLog<EventSource>) -> (Vec<CheckedEvent>, Vec<VisitedJunction>) {

@@ -273,6 +273,7 @@ fn unproved(divergence: &UnprovedDivergence) -> String {
     let found = found.as_ref().map_or("end of the log".to_owned(), event);
     let why = match why {
         Unproved::Scans => "what scans show may be wrong where the robot did not drive",
+        Unproved::Poses => "where odometry drifts, a pass may lie beside the place that it is of",
         Unproved::Lost => {
             "the log records that the robot got lost, which inferred events do not show"
         }

@@ -1,5 +1,5 @@
 //! Runs of a robot that maps random buildings by a laser scanner, and the judgement of their own logs by `conform --events
-//! laser`: it never accuses a robot that was simulated, unless it is judged in the world of another building.
+//! laser`: it never accuses a robot that was simulated.
 
 use std::env;
 
@@ -57,8 +57,6 @@ const MOST: [usize; 2] = [12, 6];
 struct SelfJudged {
     /// Without a world and in its own one; `None` if the scans show no junction that was visited.
     verdicts: [Option<ConformVerdict>; 2],
-    /// In the world of another building.
-    elsewhere: Option<ConformVerdict>,
     /// The number of visits that the scans show.
     visits: usize,
     /// The number of times that the robot derived where it is.
@@ -88,13 +86,10 @@ fn judged(number: u64) -> SelfJudged {
     let (_, log) = sampler.logged_run(number, method, &head, &mut arrivals).unwrap();
     let log = Log::of_bytes(log).unwrap();
     let world = NamedWorld::numbered("building", "", graph, Some(facing));
-    let (other, facing) = sampler.run_world(number + 1000).unwrap();
-    let other = NamedWorld::numbered("another building", "", other, Some(facing));
-    let checked = [None, Some(&world), Some(&other)].map(|world| check(&log, &head, world));
+    let checked = [None, Some(&world)].map(|world| check(&log, &head, world));
     let visits = checked[0].as_ref().map_or(0, |checked| checked.extracted.junctions.len());
-    let [alone, own, elsewhere] =
-        checked.map(|checked| checked.map(|checked| checked.judgement.verdict()));
-    SelfJudged { verdicts: [alone, own], elsewhere, visits, arrivals: arrivals.count }
+    let verdicts = checked.map(|checked| checked.map(|checked| checked.judgement.verdict()));
+    SelfJudged { verdicts, visits, arrivals: arrivals.count }
 }
 
 /// The judgement of a log; `None` if no junction is visited in its scans.
@@ -126,9 +121,6 @@ fn the_log_of_a_simulated_run_never_diverges() {
     let runs = env::var("TOPOSLAM_SELF_JUDGED").map_or(16, |runs| runs.parse().unwrap());
     let judged = sample(0..runs, &(), |number| Some(judged(number)));
     assert_eq!(judged.len() as u64, runs);
-    let is_refuted = |run: &&SelfJudged| run.elsewhere == Some(ConformVerdict::Diverged);
-    let refuted = judged.iter().filter(is_refuted).count() as u64;
-    assert!(refuted >= runs / 4, "{refuted} of {runs} logs are known to be of another building");
     let mut wrong = Vec::new();
     for (run, scanner) in judged.into_iter().zip(SCANNERS.iter().cycle()) {
         eprintln!("{} {run:?}", scanner.name);

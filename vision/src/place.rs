@@ -37,7 +37,7 @@ pub struct PlaceView {
     pub places: Vec<SeenPlace>,
     /// The same if the arms in doubt are arms, too: those that the sensor did not look into.
     pub possible_places: Vec<SeenPlace>,
-    /// What is proved of the places, by a whole log.
+    /// What was driven of the places and what is seen to end, by a whole log.
     pub facts: Option<PlaceFacts>,
     pub sector: ViewSector,
     /// The width of the way in which the robot is, between its walls, in metres; `None` by a camera, or if it is in no way.
@@ -46,7 +46,7 @@ pub struct PlaceView {
     pub scene: Option<Scene>,
 }
 
-/// What is proved of places: an arm was driven, or a way is seen to end.
+/// What was driven of places, and what is seen to end.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaceFacts {
     /// The places whose arms were driven.

@@ -8,7 +8,7 @@ use toposlam_vision::visits::{
 
 use super::*;
 use crate::{
-    PossibleVisits, UndecidedCause, Unproved, VisitFit, VisitedJunction, extract::ProvedVisits,
+    DrivenVisits, PossibleVisits, UndecidedCause, Unproved, VisitFit, VisitedJunction,
     known_world::KnownWorld,
 };
 
@@ -50,13 +50,13 @@ fn events_of(visits: &[Seen]) -> (Vec<CheckedKind>, Vec<VisitedJunction>) {
 
 /// The judgement of visits, in a world without a marker, from any of its darts, or in any world.
 fn judged_visits(visits: &[Seen], world: Option<&EmbeddedGraph>) -> Judgement {
-    with_proof(visits, None, world)
+    with_driven(visits, None, world)
 }
 
-/// The same where so much of the visits is proved.
-fn with_proof(
+/// The same where so much of the visits was driven.
+fn with_driven(
     visits: &[Seen],
-    proved: Option<&[Seen]>,
+    driven: Option<&[Seen]>,
     world: Option<&EmbeddedGraph>,
 ) -> Judgement {
     let (kinds, junctions) = events_of(visits);
@@ -66,15 +66,15 @@ fn with_proof(
         (0..).zip(&mut events.events).for_each(|(time, event)| event.source.time = time);
         events
     };
-    let proved = proved.map(|visits| {
+    let driven = driven.map(|visits| {
         let (kinds, junctions) = events_of(visits);
-        ProvedVisits { events: timed(kinds).events, junctions }
+        DrivenVisits { events: timed(kinds).events, junctions }
     });
     let events = timed(kinds);
     let states = |graph: &EmbeddedGraph| anywhere(graph, &NoMarker);
     let world = world.map(|graph| KnownWorld { graph: graph.clone(), states: states(graph) });
     let config = ConformConfig { world, marker: &NoMarker, ..by_anyone() };
-    let possible = PossibleVisits::judge(&events, &junctions, proved.as_ref(), &config, &());
+    let possible = PossibleVisits::judge(&events, &junctions, driven.as_ref(), &config, &());
     judged(&events, &config).with_possible(possible)
 }
 
@@ -122,27 +122,26 @@ fn what_scans_show_accuses_nobody() {
 }
 
 #[test]
-fn what_a_robot_drove_accuses_it_in_a_known_world() {
+fn what_a_robot_drove_may_not_fit_a_known_world_either() {
     let end: Seen = (&[Some((1, 0))], true);
     let crossing: Seen = (&[Some((4, 1))], false);
     let (open, anything): (Seen, Seen) = ((&[Some((3, 1)), Some((4, 1))], false), (&[], false));
     let ring = ring();
-    let refuted = |proved: &[Seen]| {
-        let found = with_proof(&[end, crossing], Some(proved), Some(&ring));
-        let cause = found.divergence.as_ref().map(|found| (found.event, found.cause.name()));
-        assert_eq!(found.contradiction.is_some(), cause.is_none());
-        (found.verdict(), cause)
+    let contradiction = |driven: &[Seen]| {
+        let found = with_driven(&[end, crossing], Some(driven), Some(&ring));
+        assert_eq!(verdict(&found).0, ConformVerdict::NotKnown);
+        let (divergence, why) = found.contradiction.unwrap();
+        (divergence.event, divergence.cause.name(), why)
     };
-    let diverged = |event| (ConformVerdict::Diverged, Some((event, "proved")));
-    assert_eq!(refuted(&[end, crossing]), diverged(2));
-    assert_eq!(refuted(&[anything, crossing]), diverged(1));
-    for proved in [[end, open], [end, anything], [anything, open]] {
-        assert_eq!(refuted(&proved), (ConformVerdict::NotKnown, None), "{proved:?}");
+    assert_eq!(contradiction(&[end, crossing]), (2, "driven", Unproved::Poses));
+    assert_eq!(contradiction(&[anything, crossing]), (1, "driven", Unproved::Poses));
+    for driven in [[end, open], [end, anything], [anything, open]] {
+        assert_eq!(contradiction(&driven), (2, "percept", Unproved::Scans), "{driven:?}");
     }
-    // What is proved matters only if the visits themselves fit no choice, and if the building is a network of corridors.
-    let found = with_proof(&[end, open], Some(&[end, crossing]), Some(&ring));
-    assert_eq!((found.verdict(), found.divergence), (ConformVerdict::NotKnown, None));
-    let found = with_proof(&[end, crossing], Some(&[end, crossing]), Some(&ring));
+    // It matters only if the visits themselves fit no choice, and if the building is a network of corridors.
+    let found = with_driven(&[end, open], Some(&[end, crossing]), Some(&ring));
+    assert!(found.contradiction.is_none());
+    let found = with_driven(&[end, crossing], Some(&[end, crossing]), Some(&ring));
     let network = NetworkFit { fault: Some(NetworkFault::Wide), ..NetworkFit::default() };
     let possible = found.possible.clone().unwrap().in_building(network);
     assert_eq!(possible.refuted, None);

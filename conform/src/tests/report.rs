@@ -42,7 +42,7 @@ fn each_cause_has_a_name_and_a_class() {
         (measured(ContradictoryMeasurement::ClosedWalk { off: 3.0, way: 41.0 }), "moved", Motion),
         (measured(ContradictoryMeasurement::Shape), "shape", Perception),
         (Undecided(UndecidedCause::Unclear), "undecided", Perception),
-        (Proved, "proved", Perception),
+        (Driven, "driven", Perception),
         (misfit(percept), "percept", Perception),
         (misfit(door), "no-such-door", Chosen),
         (NoWorld { event: percept, why }, "no-world", Perception),

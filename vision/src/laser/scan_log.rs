@@ -251,7 +251,7 @@ impl ScanLog {
             let facts = local.facts(&viewpoints, &driven, &self.params);
             (local, facts)
         };
-        // Only passes that lie on each other beyond doubt prove anything.
+        // By passes that lie on each other beyond doubt.
         let (local, facts) = view_with(sure);
         if unsure.is_empty() { (local, facts) } else { (view_with(unsure).0, facts) }
     }

@@ -52,9 +52,9 @@ pub fn logged_visits<S: Copy + Default>(
     visits_in(log, &params, views.iter().map(Cow::Borrowed), at)
 }
 
-/// The same by what the log proves: an arm is certain if it was driven, and possible unless it is seen to end. `None` if
-/// nothing is proved, because odometry drifts: then passes are not compared.
-pub fn proved_visits<S: Copy + Default>(
+/// The same where an arm is certain if it was driven, and possible unless it is seen to end. `None` if odometry drifts: then
+/// it is not known which passes are of one place.
+pub fn driven_visits<S: Copy + Default>(
     log: &ScanLog,
     views: &[PlaceView],
     at: impl Fn(usize) -> S,
