@@ -1,6 +1,7 @@
 //! Recorded logs, for Python: the head, the topics, and what they record as columns.
 
 use std::{
+    collections::BTreeMap,
     fmt::Display,
     path::{Path, PathBuf},
 };
@@ -258,7 +259,7 @@ pub(crate) fn log_picture(py: Python<'_>, reader: &LogReader, title: &str) -> Py
             if watcher.stop() {
                 return Ok(None);
             }
-            picture.add(entry.map_err(|cause| cause.to_string())?);
+            picture.add(entry.map_err(|cause| cause.to_string())?, &BTreeMap::new());
         }
         Ok::<_, String>(Some(laser_run_svg(&picture)))
     })?;
