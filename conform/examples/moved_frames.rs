@@ -123,7 +123,7 @@ fn derived<'a>(
     params: &LaserParams,
 ) -> (Vec<Visit>, usize) {
     let log = ScanLog::new(scans.map(|(scan, odometry)| (Arc::clone(scan), odometry)), *params);
-    let views: Vec<_> = (0..log.len()).map(|view| log.view(view)).collect();
+    let views: Vec<_> = (0..log.len()).map(|view| log.view(view, false)).collect();
     let mut visits = logged_visits(&log, &views, |_| ()).visits;
     let all = visits.len();
     visits.retain(|visit| visit.doubt.is_none());

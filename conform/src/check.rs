@@ -167,8 +167,10 @@ impl LogCheck<'_> {
             dart_bound: self.max_darts.unwrap_or(settings.dart_bound),
         };
         let marked = marker.name() != NoMarker.name();
+        // Whether a corridor bends enough for a corner does not show by driving there.
+        let driven = config.world.is_some() && !self.laser.corner.corners;
         let extraction =
-            ExtractConfig { evidence: self.evidence, sensor, marked, laser: self.laser };
+            ExtractConfig { evidence: self.evidence, sensor, marked, laser: self.laser, driven };
         let mut extracted = extract(log, topics, &extraction, watch)?;
         let added = self.add_marker(topics, &mut extracted, marker)?;
         if self.marker.is_none() && driver != RunDriver::Anyone {
@@ -201,9 +203,8 @@ impl LogCheck<'_> {
                 matched_scans,
                 ..
             } => {
-                // Whether a corridor bends enough for a corner is no fact, nor is the motion between scans.
-                let is_known = !self.laser.corner.corners && matched_scans.is_none();
-                let driven = driven.as_ref().filter(|_| is_known);
+                // Without odometry it is not known where the robot drove.
+                let driven = driven.as_ref().filter(|_| matched_scans.is_none());
                 let possible = PossibleVisits::judge(&complete, junctions, driven, &config, watch)
                     .in_building(network.unwrap_or_default())
                     .by_scans(*matched_scans);

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Point2;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
@@ -21,7 +22,6 @@ use toposlam_model::{
 };
 use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
-    geometry::moved,
     laser::{params::LaserParams, scan_log::ScanLogBuilder},
     place::{PlaceArm, PlaceView},
     sensing::Sensor,
@@ -61,6 +61,8 @@ pub struct ExtractConfig<'s> {
     /// Whether the robot puts its marker down at its start. This matters only for inferred events.
     pub marked: bool,
     pub laser: LaserParams,
+    /// Whether visits are derived from laser scans once more, by what was driven.
+    pub driven: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -98,7 +100,7 @@ pub struct ExtractedRun {
     /// The arms that are seen at each of them, clockwise from the entry door.
     pub arms: Vec<Vec<PlaceArm>>,
     /// Where free space is wider than a corridor, in metres in the frame of odometry.
-    pub wide: Vec<[f64; 2]>,
+    pub wide: Vec<Point2<f64>>,
     /// Where each scan was taken, by its message, if the log has no odometry.
     pub poses: BTreeMap<EventId, Odometry>,
     /// The sightings of a marker that is a fiducial.
@@ -209,7 +211,7 @@ impl ExtractConfig<'_> {
     /// Events of a robot without a marker from this source, with the default parameters.
     #[must_use]
     pub fn new(evidence: Evidence) -> Self {
-        Self { evidence, sensor: None, marked: false, laser: LaserParams::default() }
+        Self { evidence, sensor: None, marked: false, laser: LaserParams::default(), driven: false }
     }
 }
 
@@ -223,7 +225,7 @@ pub fn extract(
     config: &ExtractConfig,
     watch: &impl Watch,
 ) -> Result<ExtractedRun, ExtractError> {
-    let ExtractConfig { evidence, sensor, marked, laser } = *config;
+    let ExtractConfig { evidence, sensor, marked, laser, driven } = *config;
     // Only the recorded events show that a robot recovered.
     let recorded: &[Role] = match evidence {
         Evidence::Scenes | Evidence::Images => &[Role::Percept, Role::Door],
@@ -287,7 +289,7 @@ pub fn extract(
             if run.matched_scans.is_some() {
                 run.poses.clone_from(&scans.poses);
             }
-            let SensedLog { visits, driven, drift, network, wide } = scans.visits(watch);
+            let SensedLog { visits, driven, drift, network, wide } = scans.visits(driven, watch);
             run.arms = visits.visits.iter().map(|visit| visit.arms.clone()).collect();
             let (events, junctions) = visit_events(visits);
             (run.junctions, run.drift, run.network, run.wide) =
@@ -309,7 +311,7 @@ struct SensedLog {
     /// Whether the building is a network of corridors.
     network: NetworkFit,
     /// Where free space is wider than a corridor.
-    wide: Vec<[f64; 2]>,
+    wide: Vec<Point2<f64>>,
 }
 
 /// The scans of a log, each with its source.
@@ -330,23 +332,25 @@ impl LoggedScans {
         }
     }
 
-    fn visits(self, watch: &impl Watch) -> SensedLog {
+    /// The visits; those by what was `driven`, too, if they are asked for.
+    fn visits(self, driven: bool, watch: &impl Watch) -> SensedLog {
         let log = self.log.finish();
         let mut views = Vec::with_capacity(log.len());
         let mut done = 0;
         while views.len() < log.len() {
             let next = views.len()..log.len().min(views.len() + VIEWS);
-            views.par_extend(next.into_par_iter().map(|view| log.view(view)));
+            views.par_extend(next.into_par_iter().map(|view| log.view(view, driven)));
             let scans = log.scan(views.len() - 1) + 1;
             watch.part_done((scans - done) as u64);
             done = scans;
         }
         let visits = logged_visits(&log, &views, |scan| self.sources[scan]);
-        let driven = driven_visits(&log, &views, |scan| self.sources[scan]);
+        let by_driven = || driven_visits(&log, &views, |scan| self.sources[scan]);
+        let driven = driven.then(by_driven).flatten();
         let params = &log.params().network;
         let network = NetworkFit::new(&views, &visits, params);
         let is_wide = |view: &&PlaceView| view.width.is_some_and(|width| width > params.widest);
-        let place = |view: &PlaceView| moved(&view.odometry_from_map, &view.robot).position;
+        let place = |view: &PlaceView| view.odometry_from_map * Point2::from(view.robot.position);
         let wide = views.iter().filter(is_wide).map(place).collect();
         SensedLog { visits, driven, drift: log.drift(), network, wide }
     }

@@ -31,7 +31,7 @@ use toposlam_vision::{
         scan_log::ScanLog,
     },
     place::SeenPlace,
-    visits::{VisitPercept, logged_visits},
+    visits::{VisitPercept, driven_visits, logged_visits},
 };
 
 /// A degree, and the door that was taken.
@@ -68,7 +68,7 @@ fn events_of(scans: &[PlacedScan], params: &LaserParams) -> RunEvents {
 
 fn inferred(scans: &[PlacedScan], params: &LaserParams) -> (RunEvents, Vec<VisitedJunction>) {
     let log = ScanLog::new(scans.iter().cloned(), *params);
-    let views: Vec<_> = (0..log.len()).map(|view| log.view(view)).collect();
+    let views: Vec<_> = (0..log.len()).map(|view| log.view(view, false)).collect();
     let source = |scan| EventSource { time: scan as u64 * 1_000_000_000, ..EventSource::default() };
     let (events, junctions) = visit_events(logged_visits(&log, &views, source));
     (RunEvents { events, ..RunEvents::default() }, junctions)
@@ -540,9 +540,50 @@ fn an_arm_that_was_driven_on_a_later_pass_is_certain_if_the_passes_agree() {
 fn a_log_shows_a_place_before_the_robot_comes_to_it() {
     let scans = drive(180, &comb(), &[[3.0, 0.0], [57.0, 0.0]], 0.0);
     let log = ScanLog::new(scans, LaserParams::default());
-    let mut views = (0..log.len()).map(|view| log.view(view));
+    let mut views = (0..log.len()).map(|view| log.view(view, false));
     let view = views.find(|view| view.robot.position[0] > 7.0).unwrap();
     let is_first = |place: &SeenPlace| geometry::distance(place.centre, [14.0, 0.0]) < 1.0;
     let place = view.places.iter().find(|place| is_first(place)).unwrap();
     assert_eq!(place.directions().count(), 3);
+}
+
+/// What is possible of each visit by what was driven and what is seen to end.
+fn driven(scans: &[PlacedScan]) -> Vec<Vec<Option<VisitPercept>>> {
+    let log = ScanLog::new(scans.iter().cloned(), LaserParams::default());
+    let views: Vec<_> = (0..log.len()).map(|view| log.view(view, true)).collect();
+    let visits = driven_visits(&log, &views, |scan| scan).unwrap().visits;
+    visits.iter().map(|visit| visit.alternatives()).collect()
+}
+
+#[test]
+fn arms_that_were_driven_are_certain_and_those_that_are_not_seen_to_end_are_possible() {
+    let percept = |degree, door| Some(VisitPercept { degree, door: Some(door) });
+    // Past three junctions to the end of the corridor, back past two of them, and into the stem of the first.
+    let way = [[3.0, 0.0], [57.0, 0.0], [14.0, 0.0], [14.0, 13.0]];
+    let crossing = || vec![None, percept(3, 1), percept(3, 2), percept(4, 2)];
+    let expected = [
+        vec![percept(3, 2)],
+        vec![None, percept(3, 1)],
+        crossing(),
+        crossing(),
+        vec![None, percept(3, 2)],
+        vec![percept(3, 2)],
+    ];
+    let scans = drive(360, &comb(), &way, 0.0);
+    assert_eq!(driven(&scans), expected);
+    // The odometry of the way back is off: it is not known to be of the same place.
+    let turned = scans.iter().position(|(_, at)| at.position[0] > 56.0).unwrap();
+    let mut off = scans.clone();
+    for (_, odometry) in &mut off[turned..] {
+        odometry.position[0] += 0.6;
+    }
+    assert_eq!(driven(&off)[0], [None, percept(3, 2)]);
+    assert_eq!(inferred(&off, &LaserParams::default()).1[0].alternatives, [percept(3, 2)]);
+    // Where a log begins nothing is known of where the robot came from.
+    let begins = drive(360, &comb(), &[[14.0, 0.5], [40.0, 0.0]], 0.0);
+    assert_eq!(driven(&begins), [vec![], vec![None, percept(3, 1)]]);
+    // Where scans are matched it is not known which passes are of one place.
+    let log = ScanLog::new(scans, matched(ROUNDS));
+    let views: Vec<_> = (0..log.len()).map(|view| log.view(view, true)).collect();
+    assert!(driven_visits(&log, &views, |scan| scan).is_none());
 }

@@ -2,7 +2,7 @@
 
 use toposlam_model::format::named_world::NamedWorld;
 
-use super::placed_graph::{PlacedGraph, PlacedGraphError, read_dot, read_graphml, read_tmap2};
+use super::placed_graph::{PlacedGraph, PlacedGraphError, read_graphml, read_tmap2};
 
 /// Reads a graph.
 type Read = fn(&str) -> Result<PlacedGraph, PlacedGraphError>;
@@ -18,9 +18,9 @@ pub(crate) fn world_of_other(bytes: &[u8]) -> Option<Result<NamedWorld, String>>
     let first = start.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or_default();
     let has = |part: &str| text.contains(part);
     let (what, read): (_, Option<Read>) = match first.to_ascii_lowercase().as_str() {
-        "graph" | "digraph" | "strict" => ("a graph in DOT (Graphviz)", Some(read_dot)),
+        "graph" | "digraph" | "strict" => ("a graph in DOT (Graphviz), which `draw` writes", None),
         _ if start.starts_with("/*") || start.starts_with("//") => {
-            ("a graph in DOT (Graphviz)", Some(read_dot))
+            ("a graph in DOT (Graphviz)", None)
         }
         _ if has("<graphml") => ("a graph in GraphML", Some(read_graphml)),
         _ if has("<gexf") => ("a graph in GEXF", None),
@@ -40,15 +40,13 @@ pub(crate) fn world_of_other(bytes: &[u8]) -> Option<Result<NamedWorld, String>>
         }
         None => Ok(None),
     };
-    // In DOT without positions it does not matter what else is not read.
-    let is_placed = !what.contains("DOT") || has("pos");
     Some(match world {
         Ok(Some(world)) => Ok(world),
-        Err(error) if is_placed => Err(format!("this is {what}: {error}")),
-        Ok(None) | Err(_) => Err(format!(
+        Err(error) => Err(format!("this is {what}: {error}")),
+        Ok(None) => Err(format!(
             "this is {what}. It does not state the clockwise order of the edges around each vertex, which a world \
-             needs, nor positions of its nodes; worlds are read from TOML and JSON (docs: worlds/README.md), \
-             plantri's planar_code and edge_code, and from GraphML, DOT and tmap2 YAML with positions"
+             needs; worlds are read from TOML and JSON (docs: worlds/README.md), plantri's planar_code and edge_code, \
+             and from GraphML and tmap2 YAML whose nodes have positions"
         )),
     })
 }
@@ -85,14 +83,14 @@ mod tests {
 
     #[test]
     fn a_file_with_positions_is_a_world_or_says_why_it_is_none() {
-        let two = "graph { a [pos=\"0,0\"]; b [pos=\"1,0\"]; a -- b }";
+        let two = "<graphml><key id='x' attr.name='x'/><key id='y' attr.name='y'/><graph edgedefault='undirected'>\
+                   <node id='a'><data key='x'>0</data><data key='y'>0</data></node>\
+                   <node id='b'><data key='x'>1</data><data key='y'>0</data></node>\
+                   <edge source='a' target='b'/></graph></graphml>";
         assert_eq!(world_of_other(two.as_bytes()).unwrap().unwrap().graph.edge_count(), 1);
-        let one_way = two.replace("graph", "digraph").replace("--", "->");
+        let one_way = two.replace("undirected", "directed");
         let found = world_of_other(one_way.as_bytes()).unwrap().unwrap_err();
-        assert!(
-            found.starts_with("this is a graph in DOT (Graphviz): an edge leads from"),
-            "{found}"
-        );
+        assert!(found.starts_with("this is a graph in GraphML: an edge leads from"), "{found}");
         let broken = "<graphml>\n</graph>";
         let found = world_of_other(broken.as_bytes()).unwrap().unwrap_err();
         assert!(found.starts_with("this is a graph in GraphML: line 2: "), "{found}");

@@ -37,7 +37,7 @@ pub struct PlaceView {
     pub places: Vec<SeenPlace>,
     /// The same if the arms in doubt are arms, too: those that the sensor did not look into.
     pub possible_places: Vec<SeenPlace>,
-    /// What was driven of the places and what is seen to end, by a whole log.
+    /// What was driven of the places and what is seen to end, if a whole log is viewed with it.
     pub facts: Option<PlaceFacts>,
     pub sector: ViewSector,
     /// The width of the way in which the robot is, between its walls, in metres; `None` by a camera, or if it is in no way.

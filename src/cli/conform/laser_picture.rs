@@ -26,7 +26,7 @@ pub(super) fn write(path: &Path, log: &Path, judged: &JudgedLog) -> Result<(), C
     let extracted = &judged.checked.extracted;
     picture.visits = visits(extracted);
     if extracted.network.is_some_and(|network| network.fault == Some(NetworkFault::Wide)) {
-        picture.wide.clone_from(&extracted.wide);
+        picture.wide = extracted.wide.iter().map(|&place| place.into()).collect();
     }
     let name = log.file_name().unwrap_or(log.as_os_str()).to_string_lossy();
     name.trim_end_matches(".gz").trim_end_matches(".log").clone_into(&mut picture.title);

@@ -1,7 +1,6 @@
 //! Graphs of other programs whose nodes have positions, as worlds: the clockwise order of the edges around a node is that of
 //! their directions. x points to the right and y up.
 
-mod dot;
 mod graphml;
 mod tmap2;
 
@@ -16,7 +15,6 @@ use toposlam_model::{
     format::{named_world::NamedWorld, world_file},
 };
 
-pub(crate) use dot::read as read_dot;
 pub(crate) use graphml::read as read_graphml;
 pub(crate) use tmap2::read as read_tmap2;
 

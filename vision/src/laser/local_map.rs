@@ -38,8 +38,8 @@ pub(super) struct LocalView {
     pub possible_places: Vec<SeenPlace>,
     /// See [`PlaceView::width`].
     pub width: Option<f64>,
-    /// All ways of the map.
-    ways: WayGraph,
+    /// See [`PlaceView::facts`].
+    pub facts: Option<PlaceFacts>,
 }
 
 impl LocalView {
@@ -50,6 +50,7 @@ impl LocalView {
         viewpoints: &[Viewpoint],
         driven: &[Point2<f64>],
         params: &LaserParams,
+        with_facts: bool,
     ) -> Self {
         grid.clean(&params.map);
         let clearances = Clearances::new(grid);
@@ -57,29 +58,25 @@ impl LocalView {
         let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &clearances));
         let ways = ways.unwrap_or_default();
         let judge = ArmJudge { map: &clearances, viewpoints, driven, params: &params.arm };
+        let places_of =
+            |counted: CountedArms| ways.clone().pruned(&judge, counted).0.places(params);
+        let facts = with_facts.then(|| PlaceFacts {
+            driven: places_of(CountedArms::Driven),
+            not_ended: places_of(CountedArms::NotEnded),
+        });
         let (graph, any_in_doubt) = ways.clone().pruned(&judge, CountedArms::Seen);
         let places = graph.places(params);
-        let possible_places = if any_in_doubt {
-            ways.clone().pruned(&judge, CountedArms::SeenOrInDoubt).0.places(params)
-        } else {
-            places.clone()
-        };
+        let possible_places =
+            if any_in_doubt { places_of(CountedArms::SeenOrInDoubt) } else { places.clone() };
         let width =
             skeleton.as_ref().and_then(|ways| ways.width_at(robot, &clearances, &params.map));
-        Self { map: LocalMap { clearances, skeleton, graph }, places, possible_places, width, ways }
-    }
-
-    /// What was driven, or seen to end, from these viewpoints and by a robot at the points that were `driven`.
-    pub(super) fn facts(
-        &self,
-        viewpoints: &[Viewpoint],
-        driven: &[Point2<f64>],
-        params: &LaserParams,
-    ) -> PlaceFacts {
-        let judge = ArmJudge { map: &self.map.clearances, viewpoints, driven, params: &params.arm };
-        let [driven, not_ended] = [CountedArms::Driven, CountedArms::NotEnded]
-            .map(|counted| self.ways.clone().pruned(&judge, counted).0.places(params));
-        PlaceFacts { driven, not_ended }
+        Self {
+            map: LocalMap { clearances, skeleton, graph },
+            places,
+            possible_places,
+            width,
+            facts,
+        }
     }
 }
 

@@ -110,7 +110,7 @@ impl PlaceSensor for LaserSensor {
         let viewpoints = self.viewpoints.make_contiguous();
         let driven: Vec<_> = viewpoints.iter().map(Viewpoint::point).collect();
         let LocalView { map, places, possible_places, width, .. } =
-            LocalView::new(grid, position, viewpoints, &driven, &self.params);
+            LocalView::new(grid, position, viewpoints, &driven, &self.params, false);
         self.map = Some(map);
         Some(PlaceView {
             robot,

@@ -148,7 +148,7 @@ impl WalkSampler {
             if watch.stop() {
                 return None;
             }
-            let view = log.view(number);
+            let view = log.view(number, false);
             let step = &walk.steps[steps[log.scan(number)]];
             judged.add_view(&world, step.pose, &view, self.sensing.visit.range);
             views.push(view);
