@@ -337,6 +337,23 @@ mod tests {
     }
 
     #[test]
+    fn obstacles_beside_each_other_that_stand_in_no_line_are_no_wall() {
+        let mut grid = with_obstacles(10, 2, 5);
+        // Every other one stands 0.45 m aside.
+        for column in 0..grid.columns {
+            for row in 9..12 {
+                let at = row * grid.columns + column;
+                if (column.wrapping_sub(5) / 5) % 2 == 1 && grid.cells[at] == Cell::Occupied {
+                    grid.cells.swap(at, at - 3 * grid.columns);
+                }
+            }
+        }
+        assert_eq!(occupied(&grid), 60);
+        grid.clean(&LocalMapParams::default());
+        assert_eq!(occupied(&grid), 0);
+    }
+
+    #[test]
     fn a_row_of_mullions_is_a_wall_in_any_direction() {
         let mut grid = Grid {
             cells: vec![Cell::Free; 60 * 60],

@@ -439,14 +439,14 @@ mod tests {
             }
         }
         assert_eq!(degrees(&[], CountedArms::Seen, &glass), none, "far, but between no walls");
-        assert_eq!(degrees(&along, CountedArms::SeenOrInDoubt, &closed_way()), none, "a room");
+        assert_eq!(degrees(&along, CountedArms::SeenOrInDoubt, &closed_way(40)), none, "a room");
     }
 
-    /// A corridor, and a way of 6 m from it that ends.
-    fn closed_way() -> Grid {
-        let mut closed = with_way(40);
+    /// A corridor, and a way of so many cells from it that ends.
+    fn closed_way(rows: usize) -> Grid {
+        let mut closed = with_way(rows);
         for column in 125..=135 {
-            closed.cells[63 * closed.columns + column] = Cell::Occupied;
+            closed.cells[(23 + rows) * closed.columns + column] = Cell::Occupied;
         }
         closed
     }
@@ -463,7 +463,10 @@ mod tests {
         for rows in [12, 40, 70] {
             assert_eq!(facts(&driven, &with_way(rows)), [none.clone(), vec![3]], "{rows}");
         }
-        assert_eq!(facts(&driven, &closed_way()), [none.clone(), none.clone()], "a room");
+        for rows in [3, 4, 5, 6, 8, 40] {
+            let ended = facts(&driven, &closed_way(rows));
+            assert_eq!(ended, [none.clone(), none.clone()], "a niche, a room: {rows}");
+        }
         driven.extend((0..12).map(|metre| Point2::new(19.6, 2.4 + f64::from(metre))));
         assert_eq!(facts(&driven, &with_way(70)), [vec![3], vec![3]], "10 m of it were driven");
         assert_eq!(facts(&driven, &with_way(40))[0], none, "no more than 6 m are known");

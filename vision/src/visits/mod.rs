@@ -70,8 +70,6 @@ pub fn driven_visits<S: Copy + Default>(
         agree: 0.0,
         traversed: 0.0,
         doubt: 0.0,
-        doubted_views: 1,
-        doubted_part: 0.0,
         ..visit_params
     };
     let facts = || views.iter().filter_map(|view| Some((view, view.facts.as_ref()?)));
