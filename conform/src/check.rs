@@ -207,7 +207,7 @@ impl LogCheck<'_> {
                 let driven = driven.as_ref().filter(|_| matched_scans.is_none());
                 let possible = PossibleVisits::judge(&complete, junctions, driven, &config, watch)
                     .in_building(network.unwrap_or_default())
-                    .by_scans(*matched_scans);
+                    .without_odometry(matched_scans.is_some());
                 judgement.with_possible(possible)
             }
             ExtractedRun { unproved: Some(why), .. } => judgement.accusing_nobody(*why),

@@ -410,8 +410,8 @@ impl Judgement {
 
     /// The judgement of visits that were inferred from scans. Where some are not certain, they are judged as sets.
     pub(super) fn with_possible(self, possible: PossibleVisits) -> Self {
-        // Without the visits that are not certain, what the others show is no world; nor is a hall.
-        let is_certain = self.unrecognised.is_none() && possible.network.fault.is_none();
+        // Without the visits that are not certain, what the others show is no world.
+        let is_certain = self.unrecognised.is_none() && !possible.is_unreliable();
         let refuted = possible.refuted.map(|time| {
             let events = &self.events.events;
             let event = events.iter().position(|event| event.source.time >= time);

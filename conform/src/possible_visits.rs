@@ -21,7 +21,6 @@ use super::{
     events::{CheckedEvent, CheckedKind, RunEvents, UndecidedCause},
     known_world::KnownWorld,
     marked_visits::VisitedJunction,
-    scan_track::MatchedScans,
     visit_events::DrivenVisits,
 };
 
@@ -39,9 +38,9 @@ pub struct PossibleVisits {
     /// The time of the visit up to which the known world fits no choice of what was driven or is seen to end, in nanoseconds.
     #[serde(skip)]
     pub(super) refuted: Option<u64>,
-    /// Whether the log has no odometry, and scans too far apart to show where the robot drove.
+    /// Whether the log has no odometry: how far the robot drove along corridors is not known.
     #[serde(skip)]
-    are_scans_far_apart: bool,
+    lacks_odometry: bool,
     /// Where the robot may be after the last visit in the known world.
     #[serde(skip)]
     pub(super) states: Vec<State>,
@@ -124,9 +123,8 @@ impl PossibleVisits {
         Self { network, refuted, ..self }
     }
 
-    pub(super) fn by_scans(self, matched: Option<MatchedScans>) -> Self {
-        let are_scans_far_apart = matched.is_some_and(|matched| matched.are_far_apart());
-        Self { are_scans_far_apart, ..self }
+    pub(super) fn without_odometry(self, lacks_odometry: bool) -> Self {
+        Self { lacks_odometry, ..self }
     }
 
     /// Whether so many visits are certain that a choice that fits says something.
@@ -135,11 +133,15 @@ impl PossibleVisits {
         self.visits > 0 && of * self.certain >= least * self.visits
     }
 
-    /// Whether they decide nothing: the building is no network of corridors, no choice fits, or any visits of such a robot
+    /// Whether no visit is what it seems: the building is no network of corridors, or the log has no odometry.
+    pub(super) fn is_unreliable(&self) -> bool {
+        self.network.fault.is_some() || self.lacks_odometry
+    }
+
+    /// Whether they decide nothing: they are not reliable, no choice fits, or any visits of such a robot
     /// would.
     pub(super) fn says_nothing(&self) -> bool {
-        self.network.fault.is_some()
-            || self.are_scans_far_apart
+        self.is_unreliable()
             || self.fit == VisitFit::Contradiction
             || self.by_anyone && self.fit == VisitFit::Anything
     }
@@ -147,8 +149,7 @@ impl PossibleVisits {
     /// Whether the visits conform, as sets.
     pub(super) fn conform(&self) -> bool {
         self.by_anyone
-            && self.network.fault.is_none()
-            && !self.are_scans_far_apart
+            && !self.is_unreliable()
             && self.fit == VisitFit::Fits
             && self.is_certain_enough()
     }

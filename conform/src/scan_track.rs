@@ -24,8 +24,6 @@ pub struct MatchedScans {
     pub placed: u64,
     /// The number of scans that were skipped: they match no walls of earlier ones.
     pub unmatched: u64,
-    /// The number of scans that are farther than 0.3 m from the one before: along a corridor, the walls do not show how far.
-    pub far: u64,
 }
 
 /// So many scans in turn match nothing. The first one, at a time in nanoseconds.
@@ -40,19 +38,8 @@ pub struct UnmatchedScan {
     pub time: u64,
 }
 
-/// Farther from the one before, a scan does not show how far along a corridor it was taken, in metres.
-const FAR: f64 = 0.3;
-/// One of so many scans may be.
-const MOST_FAR: u64 = 10;
 /// So many scans may match nothing in turn: people may stand around the robot.
 const MOST_UNMATCHED: u64 = 10;
-
-impl MatchedScans {
-    /// Whether the scans are too far apart to show how far the robot drove along corridors.
-    pub fn are_far_apart(&self) -> bool {
-        MOST_FAR * self.far > self.placed
-    }
-}
 
 impl ScanTrack {
     pub(super) fn new(params: &MatchingParams) -> Self {
@@ -90,7 +77,6 @@ impl ScanTrack {
             if let Some(odometry) = self.motion.add_scan(&scan.scan) {
                 self.unmatched = None;
                 self.counts.placed += 1;
-                self.counts.far += u64::from(self.motion.last_step() > FAR);
                 placed.push(PlacedScan { odometry, ..scan });
                 continue;
             }

@@ -222,12 +222,9 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
         }
     }
     remarks.extend(facts.possible.as_ref().and_then(|visits| no_network(&visits.network)));
-    if let Some(matched) = facts.matched_scans.filter(MatchedScans::are_far_apart) {
-        let far = grouped(matched.far.into());
-        remarks.push(format!(
-            "the log has no odometry, and {far} of its scans are more than 0.3 m from the one before: how far the robot \
-             drove along corridors is not known"
-        ));
+    if facts.matched_scans.is_some() {
+        let cause = "the log has no odometry: how far the robot drove along corridors is not known";
+        remarks.push(cause.to_owned());
     }
     remarks.extend(facts.contradiction.as_ref().map(unproved));
     remarks.extend(facts.possible.as_ref().and_then(|visits| possible(visits, report)));

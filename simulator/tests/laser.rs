@@ -31,7 +31,7 @@ use toposlam_vision::{
         scan_log::ScanLog,
     },
     place::SeenPlace,
-    visits::{VisitPercept, driven_visits, logged_visits},
+    visits::{Visit, VisitPercept, driven_visits, logged_visits},
 };
 
 /// A degree, and the door that was taken.
@@ -552,7 +552,7 @@ fn driven(scans: &[PlacedScan]) -> Vec<Vec<Option<VisitPercept>>> {
     let log = ScanLog::new(scans.iter().cloned(), LaserParams::default());
     let views: Vec<_> = (0..log.len()).map(|view| log.view(view, true)).collect();
     let visits = driven_visits(&log, &views, |scan| scan).unwrap().visits;
-    visits.iter().map(|visit| visit.alternatives()).collect()
+    visits.iter().map(Visit::alternatives).collect()
 }
 
 #[test]

@@ -177,7 +177,7 @@ fn scans_long_before_the_first_odometry_and_off_the_clock_are_counted() {
     let by_scans = nowhere(Written::scan).unwrap();
     assert_eq!(
         (by_scans.scans, by_scans.matched_scans),
-        (1, Some(MatchedScans { placed: 0, unmatched: 1, far: 0 }))
+        (1, Some(MatchedScans { placed: 0, unmatched: 1 }))
     );
     let unmatched = nowhere(|log| (0..10).for_each(|_| log.scan())).unwrap_err();
     assert!(matches!(

@@ -207,7 +207,7 @@ fn without_a_world_a_marker_and_turning_back_any_visits_would_fit() {
 }
 
 #[test]
-fn the_visits_of_a_building_that_is_no_network_of_corridors_decide_nothing() {
+fn visits_without_odometry_or_in_a_building_that_is_no_network_of_corridors_decide_nothing() {
     let (end, fork): (Seen, Seen) = ((&[Some((1, 0))], true), (&[Some((3, 1))], false));
     for world in [Some(ring()), None] {
         let found = judged_visits(&[end, fork], world.as_ref());
@@ -219,5 +219,8 @@ fn the_visits_of_a_building_that_is_no_network_of_corridors_decide_nothing() {
             let open = found.clone().with_possible(possible);
             assert_eq!((open.verdict(), open.smallest), (ConformVerdict::NotKnown, None));
         }
+        let possible = found.possible.clone().unwrap().without_odometry(true);
+        let open = found.with_possible(possible);
+        assert_eq!((open.verdict(), open.smallest), (ConformVerdict::NotKnown, None));
     }
 }

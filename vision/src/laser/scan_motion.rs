@@ -142,11 +142,6 @@ impl ScanMotion {
         self.seen.push_back(SeenScan { pose: *pose, way: self.way, surfaces });
     }
 
-    /// How far the robot drove between the last two scans, in metres.
-    pub fn last_step(&self) -> f64 {
-        self.step.translation.vector.norm()
-    }
-
     /// Where points are seen, by a robot that was at a pose before.
     fn matched(&self, scan: &Scan, points: &[WallPoint], last: &Odometry) -> Option<Odometry> {
         let predicted = driven(last, &self.step);
