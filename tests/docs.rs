@@ -56,7 +56,7 @@ fn the_documents_show_what_the_commands_print() {
         "draw worlds/figure-1a.toml --out figure-1a.svg",
         "draw worlds/figure-1b.toml --out figure-1b.svg",
         "simulate worlds/shape-8.toml --svg shape-8-run.svg",
-        "explore worlds/shape-8.toml --svg shape-8-map.svg",
+        "explore worlds/shape-8.toml --map shape-8-map.svg",
     ] {
         run(&format!("toposlam {command}"), &folder);
     }

@@ -210,7 +210,7 @@ fn see(folder: &Path) {
     for n in 1..=7 {
         let pose = format!("--pose 0,{n},{} --seed {n} --size 640x480", 50 * n);
         let files = format!("--out images/{n}.png --labels labels/{n}.png");
-        run(&format!("draw {plan} --with-marker {pose} {files}"));
+        run(&format!("draw {plan} --marker directional {pose} {files}"));
     }
     run(
         "camera train --images images --labels labels --calibration camera.toml --out colours.toml",

@@ -93,7 +93,8 @@ fn folder() -> PathBuf {
     fs::write(folder.join("shards.jsonl"), shard(1) + &shard(2)).unwrap();
     for n in [2, 5, 7] {
         let pose = format!("0,{n},{}", 50 * n);
-        let render = format!("draw worlds/shape-8.toml --with-marker --size 640x480 --pose {pose}");
+        let render =
+            format!("draw worlds/shape-8.toml --marker directional --size 640x480 --pose {pose}");
         let files = format!("--out images/{n}.png --labels labels/{n}.png");
         run(&folder, &format!("{render} --seed {n} {files}"));
         fs::copy(folder.join(format!("images/{n}.png")), folder.join(format!("{n}.png"))).unwrap();

@@ -15,7 +15,6 @@ use std::{
     time::Instant,
 };
 
-use toposlam_draw::picture::{self, WorldPicture};
 use toposlam_model::{
     check::{Check, FinishedUnits, Shard, SharedPrefixCheck, Tally, WorstStart},
     embedded_graph::EmbeddedGraph,
@@ -42,7 +41,7 @@ use super::{
     text::counted,
     use_threads,
     version::version,
-    write_drawing,
+    write_world_or_picture,
 };
 use estimate::EstimateOptions;
 use explorer::{ExplorerOptions, ExplorerSweep};
@@ -224,8 +223,8 @@ impl CheckArguments {
             return self.add_shards(out);
         }
         let mapper = if let Some(command) = &self.explorer.explorer {
-            let (options, marker) = (&self.explorer, self.marker);
-            Mapper::Explorer(ExplorerSweep { command, options, marker })
+            let (limits, marker) = (self.explorer.limits(), self.marker);
+            Mapper::Explorer(ExplorerSweep { command, limits, marker })
         } else {
             let algorithm = algorithm_for(self.algorithm, self.marker, self.choices)?;
             Mapper::Algorithm(algorithm, self.choices)
@@ -309,7 +308,7 @@ impl CheckArguments {
         }
         if let Some(path) = &self.failed {
             match unmapped.iter().flatten().next() {
-                Some(world) => write_failed(path, world)?,
+                Some(world) => write_world_or_picture(path, world, &world.into())?,
                 None => remark!("{} is not written: each start was mapped", path.display()),
             }
         }
@@ -504,13 +503,6 @@ impl Work {
             // They are for algorithms.
             Self::Shared(_) | Self::All(_) => ControlFlow::Continue(()),
         }
-    }
-}
-
-fn write_failed(path: &Path, world: &NamedWorld) -> Result<(), CliError> {
-    match path.extension().and_then(|extension| extension.to_str()) {
-        Some("svg" | "png") => write_drawing(path, &picture::svg(&WorldPicture::from(world))),
-        _ => output::write_world(path, world),
     }
 }
 

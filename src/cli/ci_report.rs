@@ -13,13 +13,9 @@ use super::{CliError, Outcome, output, terminal, version};
 /// The options of a verb that gives verdicts.
 #[derive(clap::Args, Debug, Default)]
 pub(super) struct CiOptions {
-    /// Write the verdicts as a JUnit report, for CI systems
+    /// Write the verdicts for CI systems: .xml as a JUnit report, .sarif or .json as a SARIF log (repeatable)
     #[arg(long, value_name = "FILE", help_heading = "Reports for CI")]
-    junit: Option<PathBuf>,
-
-    /// Write the verdicts as a SARIF log, for code scanning
-    #[arg(long, value_name = "FILE", help_heading = "Reports for CI")]
-    sarif: Option<PathBuf>,
+    report: Vec<PathBuf>,
 }
 
 /// One verdict.
@@ -54,19 +50,18 @@ impl CiCase {
 impl CiOptions {
     /// Checks that the reports can be written, before long work begins.
     pub(super) fn check_places(&self) -> Result<(), CliError> {
-        output::check_place(&self.junit, &["xml"])?;
-        output::check_place(&self.sarif, &["sarif", "json"])?;
-        Ok(())
+        let mut paths = self.report.iter();
+        paths.try_for_each(|path| output::check_place(path, &["xml", "sarif", "json"]))
     }
 
     /// Writes the reports. In a workflow of GitHub Actions, each case that does not hold becomes an
     /// annotation, on standard error.
     pub(super) fn write(&self, verb: &str, cases: &[CiCase]) -> Result<(), CliError> {
-        if let Some(path) = &self.junit {
-            output::write_whole(path, junit(verb, cases).as_bytes())?;
-        }
-        if let Some(path) = &self.sarif {
-            let text = format!("{:#}\n", sarif(verb, cases));
+        for path in &self.report {
+            let text = match path.extension() {
+                Some(ending) if ending == "xml" => junit(verb, cases),
+                _ => format!("{:#}\n", sarif(verb, cases)),
+            };
             output::write_whole(path, text.as_bytes())?;
         }
         if env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {

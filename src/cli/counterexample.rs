@@ -56,7 +56,7 @@ The smallest pair is the one whose larger world is smallest. A world is ambiguou
 ))]
 #[command(mut_args(|option| match option.get_id().as_str() {
     // Clap does not ask for `--expect` where it cannot be given.
-    "junit" | "sarif" => option.requires("expect").conflicts_with("atlas"),
+    "report" => option.requires("expect").conflicts_with("atlas"),
     _ => option,
 }))]
 pub(super) struct CounterexampleArguments {

@@ -38,7 +38,8 @@ pub(super) struct DrawArguments {
     /// Where the robot and its marker start [default: the start in the file]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
-    /// Kind of marker, in a picture [default: the one in the file, or else directional]
+    /// Kind of marker [default: the one in the file, or else directional; with --pose, none]. With --pose, a
+    /// directional one lies at the plan's start, along the facing hallway, or, without a start, at the first L
     #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
     marker: Option<&'static dyn Marker>,
     /// The file to write: .svg, .png or .dot [default: standard output, as SVG]
@@ -53,7 +54,7 @@ impl DrawArguments {
         watch_for_interrupt()?;
         if let (Some(pose), Some(out)) = (self.view.pose(), &self.out) {
             output::check_place(out, &["png", "jpg", "jpeg"])?;
-            self.view.write(&self.world, pose, out)?;
+            self.view.write(&self.world, pose, self.marker, out)?;
             return Ok(Outcome::Holds);
         }
         output::check_place(&self.out, &["svg", "png", "dot"])?;

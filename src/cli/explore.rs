@@ -8,6 +8,7 @@ use std::{
     path::PathBuf,
 };
 
+use clap::ValueEnum;
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
@@ -27,9 +28,10 @@ use super::{
     progress::{StopSignal, watch_for_interrupt},
     run_choices,
     text::print_paragraph,
+    write_world_or_picture,
 };
 use crate::{
-    picture::{self, WorldPicture},
+    picture::WorldPicture,
     story::{PrintedStory, Story, head},
 };
 use report::ExploredWorld;
@@ -52,11 +54,11 @@ use summary::Summary;
     "\
 Examples:
   toposlam explore worlds/shape-6.toml
-  toposlam explore worlds/figure-1b.toml --start X:B --svg map.svg
+  toposlam explore worlds/figure-1b.toml --start X:B --map map.svg
   toposlam explore worlds/shape-8.toml --choices all
   toposlam explore worlds/shape-8.toml --algorithm folding
   toposlam explore worlds/shape-8.toml --marker movable
-  toposlam explore worlds/building-25.toml --summary
+  toposlam explore worlds/building-25.toml --story=summary
   toposlam explore worlds/shape-6.toml --certificate
   toposlam explore worlds/shape-6.toml --algorithm folding --audit
 
@@ -71,7 +73,6 @@ rule out. To test it, the robot follows the path that would lead from there to t
         (3, "not known: ended by Ctrl-C, or --max-darts, the states of --choices or 1 GiB of memory for the states was reached"),
     ],
 ))]
-#[expect(clippy::struct_excessive_bools, reason = "these are independent switches")]
 pub(super) struct ExploreArguments {
     /// A world file, or a plantri file with one world
     world: PathBuf,
@@ -97,13 +98,11 @@ pub(super) struct ExploreArguments {
     #[arg(long, value_name = "N", default_value_t = DEFAULT_DART_BOUND)]
     max_darts: usize,
 
-    /// Print the story of each round [default: in worlds with up to 25 vertices]
-    #[arg(long, conflicts_with = "json")]
-    story: bool,
-
-    /// Print counts of rounds and candidates in place of the story [default: in larger worlds]
-    #[arg(long, conflicts_with_all = ["story", "json"])]
-    summary: bool,
+    /// Print the story of each round, or with --story=summary counts of rounds and candidates in its place
+    /// [default: full in worlds with up to 25 vertices, summary in larger ones]
+    #[arg(long, value_name = "HOW", num_args = 0..=1, default_missing_value = "full", require_equals = true,
+        hide_possible_values = true, conflicts_with = "json")]
+    story: Option<StoryLength>,
 
     #[command(flatten)]
     audit: AuditOption,
@@ -112,20 +111,24 @@ pub(super) struct ExploreArguments {
     #[arg(long)]
     certificate: bool,
 
-    /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
+    /// Write the map: .toml, .json, .dot, plantri's .ec or .pc, or a picture with the number of moves, .svg or
+    /// .png (repeatable)
     #[arg(long, value_name = "FILE")]
-    map: Option<PathBuf>,
-
-    /// Write a picture of the map with the number of moves
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
+    map: Vec<PathBuf>,
 
     /// Print one JSON object, with the doors taken and each pick-up and drop
     #[arg(long)]
     json: bool,
 }
 
-/// The most vertices of a world whose run is printed round by round unless --story or --summary is given.
+/// How much of a run is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum StoryLength {
+    Full,
+    Summary,
+}
+
+/// The most vertices of a world whose run is printed round by round unless --story is given.
 const STORY_VERTICES: usize = 25;
 
 /// What is printed of a run.
@@ -139,7 +142,8 @@ enum RunPrinter<'o, W: Write> {
 
 impl ExploreArguments {
     fn summarises(&self, world: &NamedWorld) -> bool {
-        self.summary || (!self.story && world.graph.vertex_count() > STORY_VERTICES)
+        let is_large = world.graph.vertex_count() > STORY_VERTICES;
+        self.story.map_or(is_large, |story| story == StoryLength::Summary)
     }
 
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
@@ -147,8 +151,9 @@ impl ExploreArguments {
         let world = input::read_world(&self.world)?;
         check_worlds(self.marker, &self.world, std::slice::from_ref(&world.graph))?;
         let facing = input::start_of(&world, self.start.as_deref())?;
-        output::check_world_place(&self.map, world.graph.is_simple())?;
-        output::check_place(&self.svg, &["svg"])?;
+        for path in &self.map {
+            output::check_map_place(path, world.graph.is_simple())?;
+        }
         let of_directional =
             [("--certificate", self.certificate), ("--audit", self.audit.audits().is_some())];
         for (option, is_given) in of_directional {
@@ -212,7 +217,7 @@ impl ExploreArguments {
         out.flush()?;
         match run.map() {
             Some((map, moves)) => self.write_map(&map, moves, run.carries)?,
-            None if self.map.is_some() || self.svg.is_some() => {
+            None if !self.map.is_empty() => {
                 remark!("the map is not written: it is not complete");
             }
             None => {}
@@ -221,17 +226,11 @@ impl ExploreArguments {
     }
 
     fn write_map(&self, map: &NamedWorld, moves: u64, carries: bool) -> Result<(), CliError> {
-        if let Some(path) = &self.map {
-            output::write_world(path, map)?;
-        }
-        if let Some(path) = &self.svg {
-            // A marker that the robot carries has no place in the picture.
-            let (start, hand) =
-                if carries { (None, "; the robot carries its marker") } else { (map.start, "") };
-            let caption = format!("mapped in {moves} moves{hand}");
-            let drawn = WorldPicture { caption: &caption, start, ..WorldPicture::from(map) };
-            output::write_whole(path, picture::svg(&drawn).as_bytes())?;
-        }
-        Ok(())
+        // A marker that the robot carries has no place in the picture.
+        let (start, hand) =
+            if carries { (None, "; the robot carries its marker") } else { (map.start, "") };
+        let caption = format!("mapped in {moves} moves{hand}");
+        let picture = WorldPicture { caption: &caption, start, ..WorldPicture::from(map) };
+        self.map.iter().try_for_each(|path| write_world_or_picture(path, map, &picture))
     }
 }

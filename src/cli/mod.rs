@@ -29,7 +29,7 @@ mod walk_page;
 
 use std::{
     env,
-    ffi::OsString,
+    ffi::{OsStr, OsString},
     io::{self, Write},
     path::Path,
     process::ExitCode,
@@ -41,6 +41,7 @@ use clap::{
 };
 use toposlam_model::{
     check::{DEFAULT_STATE_BUDGET, RunChoices},
+    format::named_world::NamedWorld,
     marker::{self, MARKERS, Marker},
 };
 use toposlam_simulator::options::{appearance, noise, robot_sensor};
@@ -53,7 +54,7 @@ use toposlam_terminal::{
     text, use_threads,
 };
 
-use crate::picture;
+use crate::picture::{self, WorldPicture};
 
 /// Deterministic topological SLAM that can be trusted: an executable specification of the mapping
 /// algorithm, and a checker that runs it on every small world
@@ -124,6 +125,18 @@ fn write_drawing(path: &Path, svg: &str) -> Result<(), CliError> {
         return output::write_whole(path, &bytes);
     }
     output::write_whole(path, svg.as_bytes())
+}
+
+/// Writes a world, or a picture of it, by the ending of the file.
+fn write_world_or_picture(
+    path: &Path,
+    world: &NamedWorld,
+    picture: &WorldPicture,
+) -> Result<(), CliError> {
+    match path.extension().and_then(OsStr::to_str) {
+        Some("svg" | "png") => write_drawing(path, &picture::svg(picture)),
+        _ => output::write_world(path, world),
+    }
 }
 
 /// The error of `--ros` in a program without the feature `ros1`.

@@ -17,8 +17,12 @@ const COMMANDS: [(&str, &[&str]); 5] = [
 ];
 
 /// The old options and the new ones, which take the same values.
-const RENAMED: [(&str, &str); 2] =
-    [("--mapping", "--topics"), ("--write-mapping", "--write-topics")];
+const RENAMED: [(&str, &str); 4] = [
+    ("--mapping", "--topics"),
+    ("--write-mapping", "--write-topics"),
+    ("--junit", "--report"),
+    ("--sarif", "--report"),
+];
 
 /// The commands that are gone, and what takes their place.
 const GONE: [(&str, &str); 4] = [
@@ -73,14 +77,20 @@ pub(super) fn with_new_names(mut arguments: Vec<OsString>) -> Result<RenamedArgu
 }
 
 /// The options that have another name, or none: the command, the old name, and what to write.
-const OPTIONS: [(&[&str], &str, &str); 40] = [
+const OPTIONS: [(&[&str], &str, &str); 50] = [
     (&[], "color", "the variables NO_COLOR and CLICOLOR_FORCE decide on colours"),
     (&["check"], "max-states", "--choices all=N"),
     (&["check"], "probes", "--estimate=N"),
+    (&["check"], "timeout", "--limit Ns"),
+    (&["check"], "max-moves", "--limit Nmoves"),
+    (&["check"], "restarts", "--limit Nrestarts"),
     (&["explore"], "max-states", "--choices all=N"),
+    (&["explore"], "summary", "--story=summary"),
+    (&["explore"], "svg", "--map FILE.svg"),
     (&["explore"], "full", "the story has the first candidates of each round"),
     (&["explore"], "doors", "--json"),
     (&["draw"], "format", "--out"),
+    (&["draw"], "with-marker", "--marker directional"),
     (&["play"], "random", "without a world file, the world is random"),
     (&["proofs"], "engine", "`--choices` alone finds the engine"),
     (&["sense"], "out", "redirect standard output"),
@@ -88,6 +98,10 @@ const OPTIONS: [(&[&str], &str, &str); 40] = [
     (&["draw"], "effects", "--effect none"),
     (&["simulate"], "effects", "--effect none"),
     (&["sense"], "corners", "`corners = true` below `[corner]` in the file of --laser-params"),
+    (&["simulate"], "retry-blocked", "--blocked retry"),
+    (&["simulate"], "allow-blocked", "--blocked allow"),
+    (&["drive"], "retry-blocked", "--blocked retry"),
+    (&["drive"], "allow-blocked", "--blocked allow"),
     (&["simulate"], "max-moves", "--budget Nmoves"),
     (&["simulate"], "max-minutes", "--budget Nmin"),
     (&["simulate"], "battery-per-metre", "--budget Nm"),

@@ -48,8 +48,7 @@ A part of a lemma's name is enough if it is unique. Ctrl-C stops a check and pri
         (3, "not everything was checked, or the lemma excludes the case of --choices"),
     ],
 ))]
-#[command(mut_arg("junit", |junit| junit.requires("run").conflicts_with("choices")))]
-#[command(mut_arg("sarif", |sarif| sarif.requires("run").conflicts_with("choices")))]
+#[command(mut_arg("report", |report| report.requires("run").conflicts_with("choices")))]
 pub(super) struct ProofsArguments {
     /// Check the lemma of this name, or all lemmas (repeatable)
     #[arg(long, value_name = "NAME")]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgMatches, Command, FromArgMatches, Id, parser::ValueSource};
+use clap::{ArgMatches, Command, FromArgMatches, Id, ValueEnum, parser::ValueSource};
 use toposlam_logs::{messages, recorder::Recorder, world_hash, writer::LogWriteError};
 use toposlam_model::{
     embedded_graph::Dart,
@@ -28,12 +28,9 @@ use super::{
 pub(super) struct RunOptions {
     #[command(flatten)]
     method: MethodOptions,
-    /// With --recover: try the blocked doors once more at the end
-    #[arg(long, requires = "recover")]
-    retry_blocked: bool,
-    /// With --recover: a map that is complete but for blocked doors is enough for exit code 0
-    #[arg(long, requires = "recover")]
-    pub(super) allow_blocked: bool,
+    /// With --recover: what blocked doors mean (repeatable)
+    #[arg(long, value_enum, value_name = "WHAT", value_delimiter = ',', requires = "recover")]
+    blocked: Vec<BlockedDoors>,
     /// Return to the marker before this is over: moves, minutes of the robot's clock, or metres as far as the
     /// battery lasts, as in 25moves, 20min or 1000m; or stop if the map has more darts, as in 400darts
     /// (repeatable) [default: 1000darts]
@@ -51,6 +48,14 @@ pub(super) struct RunOptions {
     /// Print one JSON object
     #[arg(long)]
     pub(super) json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum BlockedDoors {
+    /// They are tried once more at the end
+    Retry,
+    /// A map that is complete but for them is enough for exit code 0
+    Allow,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +81,11 @@ fn limit(text: &str) -> Result<RunLimit, String> {
 }
 
 impl RunOptions {
+    /// Whether a map that is complete but for blocked doors is enough.
+    pub(super) fn allows_blocked(&self) -> bool {
+        self.blocked.contains(&BlockedDoors::Allow)
+    }
+
     /// What the robot does. If the world is known, the earlier logs must be of it.
     ///
     /// # Errors
@@ -83,7 +93,7 @@ impl RunOptions {
     pub(super) fn settings(&self, world_hash: Option<&str>) -> Result<RunSettings, CliError> {
         let method = match self.method.method()? {
             MappingMethod::Recovering(config) => MappingMethod::Recovering(RecoveryConfig {
-                retries_blocked: self.retry_blocked,
+                retries_blocked: self.blocked.contains(&BlockedDoors::Retry),
                 ..config
             }),
             method @ MappingMethod::By { .. } => method,
@@ -177,7 +187,7 @@ impl RunOptions {
 pub(super) struct GivenOptions(Vec<(String, Vec<String>)>);
 
 /// The options that change no run.
-const OUTPUTS: [&str; 7] = ["allow-blocked", "html", "json", "log", "map", "quiet", "svg"];
+const OUTPUTS: [&str; 6] = ["html", "json", "log", "map", "quiet", "svg"];
 /// The options that are repeated although they are not given: their defaults may change.
 const WITH_DEFAULTS: [&str; 2] = ["algorithm", "seed"];
 

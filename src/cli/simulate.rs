@@ -121,12 +121,11 @@ const OF_IMAGES: [&str; 5] = ["calibration", "size", "colours", "look", "effect"
 
 /// Options that need a run; --ros serves the robot instead. All are named: clap drops the requirement of an option
 /// that conflicts.
-const NOT_DRIVEN: [&str; 13] = [
+const NOT_DRIVEN: [&str; 12] = [
     "algorithm",
     "audit",
     "recover",
-    "retry_blocked",
-    "allow_blocked",
+    "blocked",
     "resume",
     "budget",
     "by_scene",
@@ -322,7 +321,7 @@ impl SimulateArguments {
         if let Some(path) = &self.html {
             output::write_whole(path, page::run_page(&page_data).as_bytes())?;
         }
-        Ok(match (run.outcome(), ended.outcome(self.options.allow_blocked)) {
+        Ok(match (run.outcome(), ended.outcome(self.options.allows_blocked())) {
             (RunOutcome::Wrong(_), _) => Outcome::Violated,
             (RunOutcome::Right, Outcome::Holds) if !missed.is_empty() => Outcome::Incomplete,
             (_, outcome) => outcome,

@@ -174,6 +174,14 @@ pub fn check_world_place<'p>(
     }
 }
 
+/// As [`check_world_place`], or for a picture.
+pub fn check_map_place(path: &PathBuf, simple: bool) -> Result<(), CliError> {
+    match path.extension().and_then(OsStr::to_str) {
+        Some(ending @ ("svg" | "png")) => check_place(path, &[ending]),
+        _ => check_world_place(path, simple),
+    }
+}
+
 /// Writes a world in the format of the file's extension: `.toml`, `.json`, Graphviz's `.dot`, plantri's
 /// `.ec` and `.pc` (also `.edge_code` and `.planar_code`).
 pub fn write_world(path: &Path, world: &NamedWorld) -> Result<(), CliError> {

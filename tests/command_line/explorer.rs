@@ -160,7 +160,7 @@ fn ctrl_c_stops_at_once_and_leaves_no_process() {
     for (number, (text, signals)) in [(fast, 1), (waiting, 1), (waiting, 2)].iter().enumerate() {
         let scratch = Scratch::new(&format!("explorer_ctrl_c_{number}"));
         let explorer = scratch.script(text);
-        let options = "--json --edges 3 --timeout 600 --max-moves 1000000000";
+        let options = "--json --edges 3 --limit 600s --limit 1000000000moves";
         let mut command = scratch.command(&format!("check {options} --explorer '{explorer}'"));
         let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         until("the explorer begins", 20, || scratch.path("begun").exists());

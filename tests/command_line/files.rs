@@ -9,10 +9,8 @@ use super::{Scratch, names_in, stderr};
 const OUTPUTS: &str = "
 check --failed: w.toml check --explorer cat --from IN --failed OUT
 check --worst: w.toml check --from IN --worst OUT
-check --junit: w.xml check --from IN --junit OUT | s.xml check --add IN --junit OUT
-check --sarif: w.sarif check --from IN --sarif OUT | s.sarif check --add IN --sarif OUT
-explore --map: w.toml explore IN --map OUT
-explore --svg: w.svg explore IN --svg OUT
+check --report: w.xml check --from IN --report OUT | s.xml check --add IN --report OUT | w.sarif check --from IN --report OUT
+explore --map: w.toml explore IN --map OUT | w.svg explore IN --map OUT
 compare --html: w.html compare IN WORLD --marker none --html OUT | w.html compare WORLD IN --marker none --html OUT
 draw --out: w.svg draw IN --out OUT | w.png draw IN --pose start --out OUT | c.png draw WORLD --pose start --calibration IN --out OUT
 draw --labels: w.png draw IN --pose start --out NEW.png --labels OUT
@@ -29,16 +27,15 @@ conform --html: l.html conform IN --html OUT | w.html conform LOG --world IN --h
 conform --minimise: l.mcap conform IN --minimise OUT | w.mcap conform LOG --world IN --minimise OUT
 conform --map: l.toml conform IN --map OUT | l.toml conform --rerun IN --map OUT | m.toml conform --rerun LOG --topics IN --map OUT
 conform --picture: q.svg conform LOG --quirks IN --picture OUT
-conform --junit: l.xml conform IN --junit OUT
-conform --sarif: l.sarif conform IN --sarif OUT
+conform --report: l.xml conform IN --report OUT | l.sarif conform IN --report OUT
 ";
 
 /// All other options with files: those that write and read no file, those that write several files into a folder, and
 /// those that read.
 const OTHERS: [(&str, &str); 11] = [
     ("check", "--journal --from --hosts"),
-    ("counterexample", "--out-dir --html --junit --sarif --atlas --hosts"),
-    ("proofs", "--junit --sarif"),
+    ("counterexample", "--out-dir --html --report --report --atlas --hosts"),
+    ("proofs", "--report"),
     ("simulate", "--calibration --colours --scanner"),
     ("drive", "--log --map --calibration --colours"),
     ("draw", "--calibration"),

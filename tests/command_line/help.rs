@@ -122,7 +122,7 @@ fn the_exit_code_without_a_reader() {
         ("check --json --edges 1..=5", 3, ""),
         ("check --json --edges 1..=5 --worst worst.toml", 0, "worst.toml"),
         (
-            "proofs --run the_way_back --junit proofs.xml --sarif proofs.sarif",
+            "proofs --run the_way_back --report proofs.xml --report proofs.sarif",
             0,
             "proofs.xml proofs.sarif",
         ),

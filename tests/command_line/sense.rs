@@ -31,7 +31,7 @@ fn scratch(name: &str) -> Scratch {
 
 /// Takes an image from a pose in shape 6, with the marker at its corner.
 fn render(scratch: &Scratch, name: &str, pose: &str) {
-    let look = "--size 640x480 --look laboratory --effect none --with-marker";
+    let look = "--size 640x480 --look laboratory --effect none --marker directional";
     scratch.out(&format!("draw worlds/shape-6.toml --pose {pose} {look} --out {name}"), 0);
 }
 

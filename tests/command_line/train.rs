@@ -56,7 +56,8 @@ fn all(name: &str) -> Scratch {
 }
 
 fn render(set: &Scratch, pose: &str, out: &str) {
-    let what = "draw worlds/shape-8.toml --with-marker --effect none --calibration camera.toml";
+    let what =
+        "draw worlds/shape-8.toml --marker directional --effect none --calibration camera.toml";
     set.out(&format!("{what} --pose {pose} --out {out}"), 0);
 }
 

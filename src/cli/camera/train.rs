@@ -42,13 +42,13 @@ Colours of labels:
 Example, with rendered images and labels:
   mkdir -p images labels
   for n in 1 2 3 4 5 6 7; do
-    toposlam draw worlds/shape-8.toml --with-marker --pose 0,$n,$((50 * n)) \\
+    toposlam draw worlds/shape-8.toml --marker directional --pose 0,$n,$((50 * n)) \\
       --seed $n --out images/$n.png --labels labels/$n.png
   done
   toposlam camera calibrate images/*.png --out camera.toml
   toposlam camera train --images images --labels labels \\
     --calibration camera.toml --out colours.toml
-  toposlam draw worlds/shape-8.toml --with-marker --pose 0.1,7.5,80 \\
+  toposlam draw worlds/shape-8.toml --marker directional --pose 0.1,7.5,80 \\
     --seed 8 --out view.png
   toposlam sense view.png --calibration camera.toml --colours colours.toml",
         &[(0, "the colours are learned"), (2, "bad usage or input"), (3, "interrupted")],

@@ -41,7 +41,7 @@ pub(super) struct EstimateOptions {
     /// Do not check: predict starts, moves and time by random probes, 10000 or this many, with 95 %
     /// confidence intervals
     #[arg(long, value_name = "PROBES", num_args = 0..=1, default_missing_value = "10000", require_equals = true,
-        value_parser = clap::value_parser!(u32).range(2..), conflicts_with_all = ["choices", "from", "shard", "worst", "failed", "journal", "junit", "sarif", "keep_going"])]
+        value_parser = clap::value_parser!(u32).range(2..), conflicts_with_all = ["choices", "from", "shard", "worst", "failed", "journal", "report", "keep_going"])]
     pub(super) estimate: Option<u32>,
 
     /// With --estimate: random seed [default: 1]

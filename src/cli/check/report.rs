@@ -148,7 +148,10 @@ impl<'o> CheckReport<'o> {
             print_hanging(self.out, "       causes: ", &causes.join(", "))?;
         }
         if line.stopped == Some(true) {
-            writeln!(self.out, "       stopped: too many runs ended their process (--restarts)")?;
+            writeln!(
+                self.out,
+                "       stopped: too many runs ended their process (--limit Nrestarts)"
+            )?;
         }
         if line.interrupted {
             writeln!(self.out, "       interrupted")?;

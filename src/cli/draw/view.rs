@@ -10,6 +10,7 @@ use toposlam_model::{
     driving::pose::Pose,
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind},
+    marker::{Directional, Marker, NoMarker},
 };
 use toposlam_simulator::{
     Building, EffectScope, KNOBS, Rig, label_mask, labels, render, start_pose,
@@ -40,7 +41,7 @@ pub(super) struct ViewOptions {
     /// Draw what the robot's camera sees in a floor plan: .png, .jpg or .jpeg. Position in metres (x east, y
     /// north) and heading in degrees counter-clockwise from east; start is the plan's start
     #[arg(long, value_name = "X,Y,HEADING", value_parser = parse_pose, allow_hyphen_values = true,
-        requires = "out", conflicts_with_all = ["start", "marker"])]
+        requires = "out", conflicts_with = "start")]
     pose: Option<ViewPose>,
     /// Camera calibration [default: a spherical mirror, 1280x960]
     #[arg(long, value_name = "FILE")]
@@ -53,9 +54,6 @@ pub(super) struct ViewOptions {
     /// Random seed
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Put the marker at the plan's start, along the facing hallway, or, without a start, at the first L
-    #[arg(long)]
-    with_marker: bool,
     /// Also write the class of each pixel as a .png: floor green, stripe red, marker blue, the robot and
     /// the area outside the mirror white, anything else black
     #[arg(long, value_name = "FILE")]
@@ -69,7 +67,22 @@ impl ViewOptions {
     }
 
     /// Writes the image.
-    pub(super) fn write(&self, path: &Path, at: ViewPose, out: &Path) -> Result<(), CliError> {
+    pub(super) fn write(
+        &self,
+        path: &Path,
+        at: ViewPose,
+        marker: Option<&dyn Marker>,
+        out: &Path,
+    ) -> Result<(), CliError> {
+        let is_marked = match marker.map(Marker::name) {
+            None => false,
+            Some(name) if name == NoMarker.name() => false,
+            Some(name) if name == Directional.name() => true,
+            Some(_) => {
+                let cause = "with --pose, the marker is directional, or there is none";
+                return Err(CliError::at("--marker", cause));
+            }
+        };
         output::check_place(&self.labels, &["png"])?;
         let world = input::read_world(path)?;
         let plan = input::floor_plan(path, &world)?;
@@ -79,7 +92,7 @@ impl ViewOptions {
             ViewPose::Start => start_pose(plan, world.start.unwrap_or(Dart(0))),
             ViewPose::At(pose) => pose,
         };
-        let marker = if self.with_marker { Some(marked(path, plan, world.start)?) } else { None };
+        let marker = if is_marked { Some(marked(path, plan, world.start)?) } else { None };
         let building = Building::new(plan, self.appearance.look, marker, &effects, self.seed);
         if !building.has_floor(pose.position) {
             let [x, y] = pose.position;
@@ -134,14 +147,13 @@ fn parse_pose(text: &str) -> Result<ViewPose, String> {
 /// The options of a view need `--pose`. Clap does not ask for it beside the options that exclude it, so they exclude
 /// these, too.
 pub(super) fn only_with_a_pose(option: Arg) -> Arg {
-    const NOT_IN_A_VIEW: [&str; 2] = ["start", "marker"];
     match option.get_id().as_str() {
         "effect" => option
             .help("Set one effect; none sets all others to nothing (repeatable). They are listed below")
             .requires("pose")
-            .conflicts_with_all(NOT_IN_A_VIEW),
-        "calibration" | "size" | "look" | "seed" | "with_marker" | "labels" => {
-            option.requires("pose").conflicts_with_all(NOT_IN_A_VIEW)
+            .conflicts_with("start"),
+        "calibration" | "size" | "look" | "seed" | "labels" => {
+            option.requires("pose").conflicts_with("start")
         }
         _ => option,
     }

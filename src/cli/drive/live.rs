@@ -96,7 +96,7 @@ impl DriveArguments {
         }
         let map = run.map("map", "The map of an unknown world, made by a live robot");
         self.options.write_map(map.as_ref())?;
-        Ok(run.outcome(self.options.allow_blocked))
+        Ok(run.outcome(self.options.allows_blocked()))
     }
 
     /// The camera and the colours of the building; `None` with a laser scanner.

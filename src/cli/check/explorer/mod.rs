@@ -25,35 +25,57 @@ pub(super) struct ExplorerOptions {
     )]
     pub(super) explorer: Option<ExplorerCommand>,
 
-    /// The most seconds for each answer of the explorer
-    #[arg(long, default_value = "10", value_name = "SECONDS", value_parser = seconds, requires = "explorer")]
+    /// The most seconds for each answer of the explorer, moves with pick-ups and drops in a run, or runs that
+    /// end their process before the rest of a size is skipped (repeatable) [default: 10s, 100000moves,
+    /// 10restarts]
+    #[arg(long, value_name = "LIMIT", value_parser = limit, requires = "explorer")]
+    limit: Vec<ExplorerLimit>,
+}
+
+/// A limit on an explorer, in place of a default one.
+#[derive(Clone, Copy, Debug)]
+enum ExplorerLimit {
+    Timeout(Duration),
+    Moves(u64),
+    Restarts(u64),
+}
+
+/// All limits on an explorer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ExplorerLimits {
     timeout: Duration,
-
-    /// The most moves, pick-ups and drops in a run of the explorer
-    #[arg(
-        long,
-        default_value_t = 100_000,
-        value_name = "N",
-        value_parser = clap::value_parser!(u64).range(1..),
-        requires = "explorer"
-    )]
-    max_moves: u64,
-
-    /// Skip the rest of a size after N runs that ended their process
-    #[arg(
-        long,
-        default_value_t = 10,
-        value_name = "N",
-        value_parser = clap::value_parser!(u64).range(1..),
-        requires = "explorer"
-    )]
+    moves: u64,
     restarts: u64,
 }
 
-fn seconds(text: &str) -> Result<Duration, String> {
-    const MOST: f64 = 86_400.0;
-    match text.parse() {
-        Ok(seconds) if seconds > 0.0 && seconds <= MOST => Ok(Duration::from_secs_f64(seconds)),
-        _ => Err(format!("write a number of seconds above 0, up to {MOST}")),
+impl ExplorerOptions {
+    pub(super) fn limits(&self) -> ExplorerLimits {
+        let timeout = Duration::from_secs(10);
+        let mut limits = ExplorerLimits { timeout, moves: 100_000, restarts: 10 };
+        for limit in &self.limit {
+            match *limit {
+                ExplorerLimit::Timeout(timeout) => limits.timeout = timeout,
+                ExplorerLimit::Moves(moves) => limits.moves = moves,
+                ExplorerLimit::Restarts(restarts) => limits.restarts = restarts,
+            }
+        }
+        limits
     }
+}
+
+/// Parses a limit: a number and its unit.
+fn limit(text: &str) -> Result<ExplorerLimit, String> {
+    const MOST: f64 = 86_400.0;
+    let unit = text.trim_start_matches(|letter: char| "0123456789.".contains(letter));
+    let number = text.strip_suffix(unit).unwrap_or_default();
+    let whole = || number.parse().ok().filter(|&number: &u64| number > 0);
+    let seconds = || number.parse().ok().filter(|&number: &f64| number > 0.0 && number <= MOST);
+    let limit = match unit {
+        "s" => seconds().map(Duration::from_secs_f64).map(ExplorerLimit::Timeout),
+        "moves" => whole().map(ExplorerLimit::Moves),
+        "restarts" => whole().map(ExplorerLimit::Restarts),
+        _ => None,
+    };
+    let units = format!("s (up to {MOST}), moves or restarts");
+    limit.ok_or_else(|| format!("write a number above 0 with its unit: {units}"))
 }

@@ -14,7 +14,7 @@ use toposlam_model::{
 };
 
 use super::{
-    ExplorerOptions,
+    ExplorerLimits,
     fault::ExplorerFault,
     process::ExplorerProcess,
     protocol::{ExplorerAnswer, ReportedMap, percept_line},
@@ -44,7 +44,7 @@ impl ExplorerStart<'_> {
     pub(super) fn run(
         &self,
         process: &mut ExplorerProcess,
-        options: &ExplorerOptions,
+        limits: ExplorerLimits,
         candidate: &mut Candidate,
     ) -> Option<EndedRun> {
         let mut world = GraphWorld::with_marker(self.graph, self.marker, self.facing);
@@ -52,15 +52,15 @@ impl ExplorerStart<'_> {
         let mut doors = Vec::new();
         let mut count = 0;
         let result = loop {
-            let line = process.ask(percept_line(world.sensed()), options.timeout)?;
+            let line = process.ask(percept_line(world.sensed()), limits.timeout)?;
             let action = match line.and_then(|line| ExplorerAnswer::from_line(&line)) {
                 Ok(ExplorerAnswer::Act(action)) => action,
                 Ok(ExplorerAnswer::Done(map)) => break self.judge(&map, &world, &doors, candidate),
                 Ok(ExplorerAnswer::GiveUp(reason)) => break Err(ExplorerFault::GaveUp { reason }),
                 Err(fault) => break Err(fault),
             };
-            if count == options.max_moves {
-                break Err(ExplorerFault::OutOfMoves { limit: options.max_moves });
+            if count == limits.moves {
+                break Err(ExplorerFault::OutOfMoves { limit: limits.moves });
             }
             count += 1;
             last.push_back(action);

@@ -23,7 +23,7 @@ use toposlam_model::{
 };
 
 use super::{
-    ExplorerOptions,
+    ExplorerLimits,
     fault::ExplorerFault,
     process::{ExplorerCommand, ExplorerProcess},
     run::ExplorerStart,
@@ -42,7 +42,7 @@ const BATCH: usize = 256;
 /// What is run, and within which limits.
 pub(in crate::cli::check) struct ExplorerSweep<'a> {
     pub(in crate::cli::check) command: &'a ExplorerCommand,
-    pub(in crate::cli::check) options: &'a ExplorerOptions,
+    pub(in crate::cli::check) limits: ExplorerLimits,
     pub(in crate::cli::check) marker: &'static dyn Marker,
 }
 
@@ -162,7 +162,7 @@ impl ExplorerSweep<'_> {
                     Some(process) => process,
                     None => self.command.start()?,
                 };
-                let Some(run) = start.run(&mut running, self.options, &mut candidate) else {
+                let Some(run) = start.run(&mut running, self.limits, &mut candidate) else {
                     tally.counts.interrupted = true;
                     continue;
                 };
@@ -173,7 +173,7 @@ impl ExplorerSweep<'_> {
                 }
                 tally.count(explorer, &start, run, running.end());
                 tallies.push(std::mem::take(&mut tally));
-                if tallies.len() as u64 == self.options.restarts {
+                if tallies.len() as u64 == self.limits.restarts {
                     return Ok(ended(tallies, left));
                 }
             }
@@ -202,7 +202,7 @@ impl ExplorerSweep<'_> {
                 let mut tallies = tallies.into_iter();
                 while let Some(tally) = tallies.next() {
                     total.merge(tally);
-                    if total.processes_ended == self.options.restarts {
+                    if total.processes_ended == self.limits.restarts {
                         enough.store(true, Ordering::Relaxed);
                         total.stopped = has_more || tallies.any(|later| later.counts.starts > 0);
                         return Ok(total);
