@@ -227,3 +227,30 @@ fn the_python_package_is_optimised_as_the_program_is() {
         assert_eq!(Some(&settings), packages.get(&name), "{name}");
     }
 }
+
+/// Whether the documentation in a folder of sources has a block of Rust.
+fn has_documented_code(folder: &Path) -> bool {
+    fs::read_dir(folder).unwrap().any(|entry| {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            return has_documented_code(&path);
+        }
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        let fences = text.lines().filter_map(|line| {
+            let line = line.trim_start();
+            line.strip_prefix("//! ```").or(line.strip_prefix("/// ```"))
+        });
+        fences.step_by(2).any(|language| !["text", "sh", "toml", "json"].contains(&language))
+    })
+}
+
+/// Running the documentation of a crate takes seconds, so it is off where there is no code to run.
+#[test]
+fn code_in_documentation_is_run() {
+    for folder in CRATES.split_whitespace() {
+        let sources = repository(folder.strip_suffix("/cli").unwrap_or(folder));
+        let manifest = fs::read_to_string(sources.parent().unwrap().join("Cargo.toml")).unwrap();
+        let is_run = !manifest.contains("doctest = false");
+        assert!(is_run || !has_documented_code(&sources), "{folder}: remove `doctest = false`");
+    }
+}

@@ -102,6 +102,7 @@ fn run(command: &str, folder: &Path) -> String {
 /// The logs are not part of the repository. Draw the pictures again with `conform LOG --picture FILE`, with the
 /// options below, look at them, and commit them.
 #[test]
+#[ignore = "it takes long: `.ci/run`"]
 fn the_pictures_of_real_logs_are_what_the_program_draws() {
     let beside = repository("../shared/data/carmen");
     let logs = env::var_os("TOPOSLAM_CARMEN_LOGS").map_or(beside, PathBuf::from);

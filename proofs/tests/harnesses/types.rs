@@ -119,6 +119,7 @@ fn refused(name: &str, file: &str, old: &str, new: &str, reason: &str) {
 }
 
 #[test]
+#[ignore = "it compiles the model again: `.ci/run`"]
 fn the_harnesses_of_the_table_compile_and_there_are_no_others() {
     let compiled = compile(&here("src"), &scratch("library"));
     let compiled = compiled.unwrap_or_else(|said| panic!("{said}"));
@@ -126,6 +127,7 @@ fn the_harnesses_of_the_table_compile_and_there_are_no_others() {
 }
 
 #[test]
+#[ignore = "it compiles the model again: `.ci/run`"]
 fn a_lemma_that_does_not_fit_its_harness_is_noticed() {
     let (file, harness) = ("lemmas/retracing.rs", "the_way_back::<_, 2, 2, 2>");
     let unfit = |text: &str| text.replace(harness, "crate::draw::byte");
@@ -136,17 +138,20 @@ fn a_lemma_that_does_not_fit_its_harness_is_noticed() {
 }
 
 #[test]
+#[ignore = "it compiles the model again: `.ci/run`"]
 fn a_harness_that_does_not_come_up_is_missed() {
     let without = |text: &str| text.replace("#[kani::proof]", "#[cfg(any())]");
     assert_eq!(compile_with("lost", "lemma.rs", without), Ok(BTreeSet::new()));
 }
 
 #[test]
+#[ignore = "it compiles the model again: `.ci/run`"]
 fn a_cover_without_a_condition_is_refused() {
     refused("cover", "lemma.rs", "cover!(holds,", "cover!(1,", "error[E0308]: mismatched types");
 }
 
 #[test]
+#[ignore = "it compiles the model again: `.ci/run`"]
 fn a_symbol_of_a_type_that_kani_has_no_symbols_of_is_refused() {
     let reason = "error[E0277]: the trait bound `String: Arbitrary` is not satisfied";
     let string = "kani::any::<String>().len() as u8";
@@ -154,6 +159,7 @@ fn a_symbol_of_a_type_that_kani_has_no_symbols_of_is_refused() {
 }
 
 #[test]
+#[ignore = "it compiles the model again: `.ci/run`"]
 fn a_warning_in_a_harness_is_refused() {
     let reason = "error: unused variable: `unused`";
     let driver = "let unused = 0; kani::assume(";
