@@ -34,6 +34,13 @@ pub(super) struct WallPoint {
     way: f64,
 }
 
+impl WallPoint {
+    /// The same point in another frame.
+    pub(super) fn moved(&self, motion: &Isometry2<f64>) -> Self {
+        Self { point: motion * self.point, normal: motion * self.normal, ..*self }
+    }
+}
+
 impl ScanMatcher {
     pub(super) fn new(params: MatchingParams) -> Self {
         Self { params, ..Self::default() }
@@ -180,9 +187,7 @@ impl ScanMatcher {
     /// Adds points of walls, in the robot's frame, where there are none yet.
     pub(super) fn add(&mut self, points: &[WallPoint], pose: &Odometry) {
         let map_from_robot = from_robot(pose);
-        for &WallPoint { point, normal, way } in points {
-            let (point, normal) = (map_from_robot * point, map_from_robot * normal);
-            let added = WallPoint { point, normal, way };
+        for added in points.iter().map(|point| point.moved(&map_from_robot)) {
             let near = self.walls.entry(square(added.point)).or_default();
             let is_known = near.iter().any(|known| {
                 distance(known.point, added.point) < self.params.spacing

@@ -14,7 +14,7 @@
 //! * [`way_graph`]: its meet points and the arms that count, and `junctions`: junctions, corners and dead ends;
 //! * [`local_map`]: all of these steps on one map;
 //! * [`sensor`]: the views of a robot that drives, and [`pictures`] of them;
-//! * [`scan_log`]: the views of a log, by all of its scans, of which `scan_choice` takes some.
+//! * [`scan_log`]: the views of a log, by all of its scans, of which `scan_choice` takes some, and by those of other `passes`.
 //!
 //! [`scene`] is another way, for the small buildings with right angles of Algorithm 2.
 
@@ -29,6 +29,7 @@ mod junctions;
 pub mod local_map;
 mod matching;
 pub mod params;
+mod passes;
 pub mod pictures;
 mod ray_counts;
 pub mod scan;

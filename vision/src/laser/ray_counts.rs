@@ -32,6 +32,19 @@ impl Rays {
     }
 }
 
+/// Where a map shows walls, and what is near them.
+pub(super) struct NearWalls {
+    side: usize,
+    near: Vec<Option<bool>>,
+}
+
+impl NearWalls {
+    /// Whether a cell is near a wall; `None` where no ray was.
+    pub(super) fn at(&self, cell: [i64; 2]) -> Option<bool> {
+        self.near[index_of(self.side, cell)?]
+    }
+}
+
 /// Counts of rays. Rays are added, and removed again when their scan is forgotten.
 #[derive(Clone, Debug)]
 pub(super) struct RayCounts {
@@ -96,15 +109,22 @@ impl RayCounts {
         }
     }
 
-    /// Whether a ray ended at most this many cells from a point, along both axes; `None` where no ray was.
-    pub(super) fn is_near_hit(&self, point: Point2<f64>, cells: i64) -> Option<bool> {
-        let [column, row] = self.cell_at(point);
-        let here = self.index([column, row])?;
-        let mut near = (-cells..=cells)
-            .flat_map(|x| (-cells..=cells).map(move |y| [column + x, row + y]))
-            .filter_map(|at| self.index(at));
-        let is_known = self.hits[here] > 0 || self.passes[here] > 0;
-        is_known.then(|| near.any(|index| self.hits[index] > 0))
+    /// Where rays ended at most this many cells off, along both axes.
+    pub(super) fn near_hits(&self, cells: usize) -> NearWalls {
+        self.near(cells, |index| self.hits[index] > 0)
+    }
+
+    /// Where walls are at most this many cells off, along both axes.
+    pub(super) fn near_walls(&self, cells: usize, params: &LocalMapParams) -> NearWalls {
+        self.near(cells, |index| self.cell(index, params) == Cell::Occupied)
+    }
+
+    fn near(&self, cells: usize, is_wall: impl Fn(usize) -> bool) -> NearWalls {
+        let walls: Vec<bool> = (0..self.hits.len()).map(is_wall).collect();
+        let near = spread(&spread(&walls, self.side, 1, cells), self.side, self.side, cells);
+        let is_known = |at: usize| self.hits[at] > 0 || self.passes[at] > 0;
+        let near = near.into_iter().enumerate().map(|(at, near)| is_known(at).then_some(near));
+        NearWalls { side: self.side, near: near.collect() }
     }
 
     /// Whether a window of this many cells a side fits around a point.
@@ -167,10 +187,21 @@ impl RayCounts {
     fn place(&self, point: Point2<f64>) -> Vector2<f64> {
         (point - self.origin) / self.cell
     }
+}
 
-    fn index(&self, cell: [i64; 2]) -> Option<usize> {
-        index_of(self.side, cell)
+/// The cells that are set, and those at most so many before or behind one in its row (`stride` 1) or column (`stride` the
+/// side).
+fn spread(cells: &[bool], side: usize, stride: usize, reach: usize) -> Vec<bool> {
+    let mut spread = vec![false; cells.len()];
+    for index in (0..cells.len()).filter(|&index| cells[index]) {
+        let at = index / stride % side;
+        let first = index - at.min(reach) * stride;
+        let last = index + (side - 1 - at).min(reach) * stride;
+        for near in (first..=last).step_by(stride) {
+            spread[near] = true;
+        }
     }
+    spread
 }
 
 fn index_of(side: usize, [column, row]: [i64; 2]) -> Option<usize> {

@@ -7,10 +7,7 @@
 //! * which scans are used is decided in the order of a hash of their readings, not from the first one on;
 //! * the cells of each local map begin at the robot, along the walls that its scan shows.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-};
+use std::{collections::BTreeMap, sync::Arc};
 
 use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::odometry::Odometry;
@@ -19,8 +16,9 @@ use super::{
     drift::{DriftMeter, ROUNDS},
     grid::floor,
     local_map::{LocalMap, LocalView, rays},
-    matching::ScanMatcher,
+    matching::{ScanMatcher, WallPoint},
     params::{LaserParams, LocalMapParams},
+    passes::{Agreement, OwnPass},
     ray_counts::{RayCounts, Rays},
     scan::Scan,
     scan_choice::{ChosenScan, ScanChoice},
@@ -55,6 +53,8 @@ struct LoggedScan {
     way: f64,
     /// In the robot's frame.
     rays: Rays,
+    /// In the robot's frame.
+    walls: Vec<WallPoint>,
 }
 
 /// A scan on a local map.
@@ -77,15 +77,13 @@ impl LoggedScan {
 
 /// The side of a square, in metres.
 const SQUARE: f64 = 8.0;
-/// Another pass agrees with a local map if at least this part of the hits of its scans, where the map is known, lies ...
-/// Logs: of passes that are a metre off along a corridor, less does; people and doors that were opened are the rest.
+/// Another pass agrees with a local map if at least this part of the hits of its scans, where the map is known, lies near
+/// walls. Logs: people and doors that were opened are the rest.
 const AGREES: f64 = 0.85;
+/// It is left where odometry lays it if so many lie there. Logs.
+const AGREES_WELL: f64 = 0.95;
 /// The same where odometry drifts, and passes lie elsewhere. Logs.
 const AGREES_IN_DRIFT: f64 = 0.9;
-/// ... this near to a wall, in cells.
-const NEAR_WALL: i64 = 2;
-/// With fewer hits where the map is known it is not known whether it agrees.
-const LEAST_HITS: usize = 200;
 /// The scans of another pass are this far apart at least, in metres. Geometry: half of a corridor.
 const APART: f64 = 0.9;
 /// The number of other passes that a map may have: the nearest ones along the way.
@@ -138,8 +136,9 @@ impl ScanLogBuilder {
             let placed = moved(&frame, &odometry);
             let pose = matcher.add_scan(&scan, &placed, way, way - params.map.memory);
             let rays = rays(&scan, &Odometry::default(), &params.map);
+            let walls = matcher.wall_points(&scan, way);
             log.squares.entry(square(&pose)).or_default().push(log.scans.len());
-            log.scans.push(LoggedScan { number, scan, hash, odometry, pose, way, rays });
+            log.scans.push(LoggedScan { number, scan, hash, odometry, pose, way, rays, walls });
         }
         log
     }
@@ -230,19 +229,41 @@ impl ScanLog {
         // What several views agree on must not depend on how the walls lie in the cells.
         let corner = Vector2::repeat(if here.hash.is_multiple_of(2) { 0.0 } else { 0.5 });
         let mut counts = RayCounts::around(robot, side + 2, params.cell, corner);
-        let on_map = |scan: &LoggedScan| scan.placed(&map_from_log);
         let on_pass = |other: &&LoggedScan| (other.way - here.way).abs() <= params.memory;
-        let mut placed: Vec<PlacedScan> = self.scans.iter().filter(on_pass).map(on_map).collect();
+        let own: Vec<&LoggedScan> = self.scans.iter().filter(on_pass).collect();
+        let mut placed: Vec<PlacedScan> =
+            own.iter().map(|scan| scan.placed(&map_from_log)).collect();
         for scan in &placed {
             counts.add(&scan.rays);
         }
-        // Passes are compared with what this one shows, and not with each other.
-        let passes = self.other_passes(here).into_iter();
-        let passes = passes.map(|pass| pass.into_iter().map(on_map).collect::<Vec<_>>());
         let least = if self.params.matching.rounds > 0 { AGREES_IN_DRIFT } else { AGREES };
-        let compared = passes.map(|pass| (Agreement::new(&pass, &counts), pass));
+        // Passes are compared with what this one shows, and not with each other.
+        let passes = self.other_passes(here);
+        let on_map = |scan: &LoggedScan| moved(&map_from_log, &scan.pose);
+        let own_walls = apart(own).into_iter().map(|scan| (&scan.walls[..], on_map(scan)));
+        let own = (!passes.is_empty()).then(|| OwnPass::new(&counts, own_walls, &self.params));
+        let compared = own.iter().flat_map(|own| {
+            passes.iter().map(|pass| {
+                let walls = pass.iter().flat_map(|scan| {
+                    let map_from_robot = from_robot(&on_map(scan));
+                    scan.walls.iter().map(move |wall| wall.moved(&map_from_robot))
+                });
+                let placed = |map_from_log: &Isometry2<f64>| -> (Agreement, Vec<PlacedScan>) {
+                    let placed: Vec<_> =
+                        pass.iter().map(|scan| scan.placed(map_from_log)).collect();
+                    let hits = placed.iter().flat_map(|scan| &scan.rays.hits);
+                    (own.agreement(hits.copied()), placed)
+                };
+                let as_logged = placed(&map_from_log);
+                if as_logged.0.part >= AGREES_WELL {
+                    as_logged
+                } else {
+                    placed(&(own.correction(walls) * map_from_log))
+                }
+            })
+        });
         let (sure, unsure): (Vec<_>, Vec<_>) = compared
-            .filter(|(agreement, _)| agreement.part >= least)
+            .filter(|(agreement, _)| agreement.part >= least && !agreement.elsewhere)
             .partition(|(agreement, _)| agreement.widest < params.min_width);
         let local = |counts: &RayCounts, placed: &[PlacedScan]| {
             let grid = counts.window(robot, side, params);
@@ -286,16 +307,8 @@ impl ScanLog {
             .collect();
         near.sort_unstable();
         let passes = near.chunk_by(|one, next| next - one == 1);
-        let sparse = |pass: &[usize]| {
-            let mut sparse: Vec<&LoggedScan> = Vec::new();
-            for scan in pass.iter().map(|&index| &self.scans[index]) {
-                if sparse.last().is_none_or(|last| scan.way - last.way >= APART) {
-                    sparse.push(scan);
-                }
-            }
-            sparse
-        };
-        let mut passes: Vec<Vec<&LoggedScan>> = passes.map(sparse).collect();
+        let pass = |indices: &[usize]| apart(indices.iter().map(|&index| &self.scans[index]));
+        let mut passes: Vec<Vec<&LoggedScan>> = passes.map(pass).collect();
         let away = |pass: &[&LoggedScan]| {
             pass.iter().map(|scan| (scan.way - here.way).abs()).fold(f64::MAX, f64::min)
         };
@@ -305,54 +318,15 @@ impl ScanLog {
     }
 }
 
-/// How far another pass agrees with a map.
-struct Agreement {
-    /// The part of the hits of its scans that lie on walls, where the map is known.
-    part: f64,
-    /// The widest wall that it sees in free space, in metres. A pass that lies elsewhere along a corridor sees some where ways
-    /// leave it.
-    widest: f64,
-}
-
-impl Agreement {
-    fn new(pass: &[PlacedScan], counts: &RayCounts) -> Self {
-        let (mut known, mut on_wall) = (0, 0);
-        let mut astray = BTreeSet::new();
-        for &hit in pass.iter().flat_map(|scan| &scan.rays.hits) {
-            if let Some(is_wall) = counts.is_near_hit(hit, NEAR_WALL) {
-                known += 1;
-                on_wall += usize::from(is_wall);
-                if !is_wall {
-                    astray.insert(counts.cell_at(hit));
-                }
-            }
+/// The scans of a pass without those that are close behind another one.
+fn apart<'a>(pass: impl IntoIterator<Item = &'a LoggedScan>) -> Vec<&'a LoggedScan> {
+    let mut some: Vec<&LoggedScan> = Vec::new();
+    for scan in pass {
+        if some.last().is_none_or(|last| scan.way - last.way >= APART) {
+            some.push(scan);
         }
-        let part = if known < LEAST_HITS { 0.0 } else { on_wall as f64 / known as f64 };
-        let widths = groups(astray).into_iter().map(|sides| sides.norm());
-        Self { part, widest: counts.cell * widths.fold(0.0, f64::max) }
     }
-}
-
-/// The sides of the rectangles around the groups of these cells, in cells. Cells of a group are at most [`NEAR_WALL`] apart.
-fn groups(mut cells: BTreeSet<[i64; 2]>) -> Vec<Vector2<f64>> {
-    let mut groups = Vec::new();
-    while let Some(first) = cells.pop_first() {
-        let (mut low, mut high) = (first, first);
-        let mut open = vec![first];
-        while let Some([column, row]) = open.pop() {
-            for near in (-NEAR_WALL..=NEAR_WALL)
-                .flat_map(|x| (-NEAR_WALL..=NEAR_WALL).map(move |y| [column + x, row + y]))
-            {
-                if cells.remove(&near) {
-                    low = [0, 1].map(|axis| low[axis].min(near[axis]));
-                    high = [0, 1].map(|axis| high[axis].max(near[axis]));
-                    open.push(near);
-                }
-            }
-        }
-        groups.push(Vector2::from([0, 1].map(|axis| (high[axis] - low[axis] + 1) as f64)));
-    }
-    groups
+    some
 }
 
 fn square(pose: &Odometry) -> [i64; 2] {

@@ -1,0 +1,164 @@
+//! Other passes of the robot by a place: how they lie on the local map of one, and whether they are of the same place.
+//!
+//! A pass is moved by a little, so that its walls lie on those of the map (Censi, *An ICP variant using a point-to-line metric*,
+//! 2008). It is of another place if it would fit better elsewhere along the walls (the search of Olson, *Real-time correlative
+//! scan matching*, 2009): corridors look alike, and a pass that lies two metres off agrees with most of what is seen.
+
+use std::collections::BTreeSet;
+
+use nalgebra::{Isometry2, Point2, Vector2};
+use toposlam_model::driving::odometry::Odometry;
+
+use super::{
+    drift::ROUNDS,
+    matching::{ScanMatcher, WallPoint},
+    params::{LaserParams, MatchingParams},
+    ray_counts::{NearWalls, RayCounts},
+};
+use crate::geometry::from_robot;
+
+/// What is near a wall is at most so many cells off.
+const NEAR_WALL: i64 = 2;
+/// With fewer hits where the map is known it is not known whether a pass agrees.
+const LEAST_HITS: usize = 200;
+/// The standard deviation of odometry between two passes, in metres and in radians. Logs: corrected ones are so far off.
+const DEVIATION: [f64; 2] = [0.3, 0.05];
+/// So many points of a pass are matched with walls, and ...
+const POINTS: usize = 200;
+/// ... so many of its hits are looked for elsewhere.
+const HITS: usize = 1000;
+/// A pass is looked for up to this far along the walls of the map and across, in metres. Geometry: in buildings with rooms of
+/// this width all looks alike there.
+const FARTHEST: f64 = 4.0;
+/// The nearest place at which it is looked for, in cells. Geometry: nearer ones are the same place.
+const NEAREST: i64 = 6;
+/// It lies elsewhere if this much more of its hits are near walls there, ... Logs.
+const MORE: f64 = 0.02;
+/// ... or this much more, if of those that are not ... Geometry: along a corridor most hits are near its walls anywhere.
+const LITTLE_MORE: f64 = 0.004;
+/// ... only this part is left there. Geometry: a third.
+const MOST_LEFT: f64 = 0.33;
+
+/// What a local map shows of its own pass.
+pub(super) struct OwnPass<'a> {
+    counts: &'a RayCounts,
+    walls: ScanMatcher,
+    /// What is near to the ends of its rays, of which some are not at walls: ...
+    near_hits: NearWalls,
+    /// ... and near to its walls.
+    near_walls: NearWalls,
+}
+
+/// How far another pass agrees with a map.
+pub(super) struct Agreement {
+    /// The part of its hits that lie on walls, where the map is known.
+    pub(super) part: f64,
+    /// The widest wall that it sees in free space, in metres.
+    pub(super) widest: f64,
+    /// Whether it would agree better elsewhere.
+    pub(super) elsewhere: bool,
+}
+
+impl<'a> OwnPass<'a> {
+    /// The pass of a map by its rays and by points of its walls, each with the pose of its scan on that map.
+    pub(super) fn new<'b>(
+        counts: &'a RayCounts,
+        walls: impl IntoIterator<Item = (&'b [WallPoint], Odometry)>,
+        LaserParams { map, matching, .. }: &LaserParams,
+    ) -> Self {
+        let mut matcher = ScanMatcher::new(MatchingParams { rounds: ROUNDS, ..*matching });
+        for (points, pose) in walls {
+            matcher.add(points, &pose);
+        }
+        let near = NEAR_WALL as usize;
+        let near_hits = counts.near_hits(near);
+        Self { counts, walls: matcher, near_hits, near_walls: counts.near_walls(near, map) }
+    }
+
+    /// The small motion of another pass after which its walls lie on those of the map, by points of its walls on the map;
+    /// none if they do not match.
+    pub(super) fn correction(&self, walls: impl Iterator<Item = WallPoint>) -> Isometry2<f64> {
+        let is_known =
+            |wall: &WallPoint| self.near_hits.at(self.counts.cell_at(wall.point)).is_some();
+        let points = some_of(walls.filter(is_known).collect(), POINTS);
+        let matched = self.walls.matched(&points, &Odometry::default(), DEVIATION);
+        matched.map_or_else(Isometry2::identity, |pose| from_robot(&pose))
+    }
+
+    /// How far another pass agrees with the map, by the ends of its rays on the map.
+    pub(super) fn agreement(&self, hits: impl Iterator<Item = Point2<f64>>) -> Agreement {
+        let hits: Vec<[i64; 2]> = hits.map(|hit| self.counts.cell_at(hit)).collect();
+        let Some(part) = part_near(&self.near_hits, &hits, [0, 0], LEAST_HITS) else {
+            return Agreement { part: 0.0, widest: 0.0, elsewhere: false };
+        };
+        let is_astray = |hit: &[i64; 2]| self.near_hits.at(*hit) == Some(false);
+        let astray = groups(hits.iter().copied().filter(is_astray).collect());
+        let widest = astray.into_iter().map(|sides| sides.norm()).fold(0.0, f64::max);
+        let is_known = |hit: &[i64; 2]| self.near_hits.at(*hit).is_some();
+        let known = some_of(hits.into_iter().filter(is_known).collect(), HITS);
+        let elsewhere = self.fit_elsewhere(&known);
+        Agreement { part, widest: self.counts.cell * widest, elsewhere }
+    }
+
+    /// Whether more of these hits are near walls after a shift. Where most of them leave what is known it is not known how
+    /// they fit.
+    fn fit_elsewhere(&self, hits: &[[i64; 2]]) -> bool {
+        let part = |shift| part_near(&self.near_walls, hits, shift, hits.len().div_ceil(2));
+        let Some(here) = part([0, 0]) else { return false };
+        let farthest = (FARTHEST / self.counts.cell) as i64;
+        (NEAREST..=farthest)
+            .step_by(NEAR_WALL as usize)
+            .flat_map(|cells| [[cells, 0], [-cells, 0], [0, cells], [0, -cells]])
+            .filter_map(part)
+            .any(|there| {
+                let most = 1.0 - there <= MOST_LEFT * (1.0 - here);
+                there > here + if most { LITTLE_MORE } else { MORE }
+            })
+    }
+}
+
+/// The part of cells that are near walls after a shift, of those where the map is known; `None` if these are fewer than
+/// `least`.
+fn part_near(
+    walls: &NearWalls,
+    cells: &[[i64; 2]],
+    [east, north]: [i64; 2],
+    least: usize,
+) -> Option<f64> {
+    let (mut known, mut near) = (0, 0);
+    for &[column, row] in cells {
+        if let Some(is_near) = walls.at([column + east, row + north]) {
+            known += 1;
+            near += usize::from(is_near);
+        }
+    }
+    (known >= least.max(1)).then(|| near as f64 / known as f64)
+}
+
+/// At most so many of these, evenly chosen.
+fn some_of<T>(all: Vec<T>, most: usize) -> Vec<T> {
+    let step = all.len().div_ceil(most).max(1);
+    all.into_iter().step_by(step).collect()
+}
+
+/// The sides of the rectangles around the groups of these cells, in cells. Cells of a group are at most [`NEAR_WALL`] apart.
+fn groups(mut cells: BTreeSet<[i64; 2]>) -> Vec<Vector2<f64>> {
+    let mut groups = Vec::new();
+    while let Some(first) = cells.pop_first() {
+        let (mut low, mut high) = (first, first);
+        let mut open = vec![first];
+        while let Some([column, row]) = open.pop() {
+            for near in (-NEAR_WALL..=NEAR_WALL)
+                .flat_map(|x| (-NEAR_WALL..=NEAR_WALL).map(move |y| [column + x, row + y]))
+            {
+                if cells.remove(&near) {
+                    low = [0, 1].map(|axis| low[axis].min(near[axis]));
+                    high = [0, 1].map(|axis| high[axis].max(near[axis]));
+                    open.push(near);
+                }
+            }
+        }
+        groups.push(Vector2::from([0, 1].map(|axis| (high[axis] - low[axis] + 1) as f64)));
+    }
+    groups
+}
