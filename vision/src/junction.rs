@@ -210,7 +210,7 @@ impl FittedJunction {
             through: turning_point,
             direction: wrapped(self.frame.angle() + number as f64 * FRAC_PI_2),
         });
-        let confidence = self.agreement.confidence();
+        let confidence = self.agreement.confidence().min(self.agreement.least);
         JunctionView { doors: doors.collect(), turning_point, confidence }
             .entered_from(std::f64::consts::PI)
     }
