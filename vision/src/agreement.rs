@@ -159,7 +159,13 @@ impl Outline {
             // A wider edge is not a stripe, but a wall of its colour, or a shadow.
             Some(_) => Held::Silent,
             None if sight.sure().is_some_and(|wall| wall < at) => Held::Against,
-            None if is_wall && before(sight.floor).abs() < near(at) => Held::Ended,
+            None if is_wall && before(sight.floor).abs() < near(at) => {
+                if sight.hidden {
+                    Held::Silent
+                } else {
+                    Held::Ended
+                }
+            }
             None if is_wall && before(sight.floor) < -near(at) => Held::Through,
             None if is_wall => Held::Silent,
             None if sight.floor >= OPEN * at => Held::Open,

@@ -381,7 +381,7 @@ mod tests {
             ([percept(3, 1), percept(3, 2), percept(4, 2)], [percept(2, 1), percept(3, 1)]);
         assert_eq!(seen(&[onwards]), [&[None], &straight[..]].concat());
         // A hallway does not bend.
-        assert_eq!(seen(&[aside]), [&left[..], &[percept(3, 2), percept(4, 1)]].concat()[..]);
+        assert_eq!(seen(&[aside]), [&left[..], &[percept(4, 1)]].concat()[..]);
         let dead_end_or_more = [1, 2, 3, 4].map(|degree| percept(degree, 0));
         assert_eq!(seen(&[back]), [&[None], &dead_end_or_more[..]].concat());
         // The log ends there.
