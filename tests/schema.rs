@@ -25,6 +25,7 @@ const NOT_RUN: [&str; 8] = [
     "evaluate-control",
     "evaluate-laser",
     "evaluate-lengths",
+    "evaluate-logs",
     "evaluate-mistakes",
     "evaluate-runs",
     "evaluate-vision",

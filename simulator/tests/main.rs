@@ -10,5 +10,4 @@ mod renderer;
 mod replay;
 mod rim;
 mod scanner;
-mod self_judged;
 mod sensing;

@@ -19,6 +19,9 @@ const THROUGH_WEIGHT: f64 = 1.5;
 const AGAINST_WEIGHT: f64 = 3.0;
 /// The most bearings with a wall in front of the outline, as a part of those in support. Views.
 const MAX_AGAINST: f64 = 0.12;
+/// Weight of a bearing on which a long wall is seen with floor behind it, for what agrees in its direction. Views: a wall
+/// may have the floor's colour, but a straight cable looks like it.
+const LONG_WEIGHT: f64 = 0.5;
 /// Weight of a bearing on which floor is seen through a door, for what agrees in its direction. Views.
 const DOOR_WEIGHT: f64 = 0.5;
 /// The most bearings with doors, as a multiple of those in support. Views.
@@ -65,6 +68,8 @@ pub struct OutlineAgreement {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Held {
     Support,
+    /// A long straight wall is seen where the outline has one, but floor behind it.
+    Long,
     /// The wall of the outline may be seen, or something on the floor: floor is seen behind it.
     Doubtful,
     Ended,
@@ -114,7 +119,7 @@ impl Outline {
             seen.doors += u32::from(held == Held::Door);
             seen.due += u32::from(held != Held::Door);
             match held {
-                Held::Support | Held::Doubtful => agreement.support += 1,
+                Held::Support | Held::Long | Held::Doubtful => agreement.support += 1,
                 Held::Ended => agreement.ended += 1,
                 Held::Silent => agreement.silent += 1,
                 Held::Door => agreement.door += 1,
@@ -124,11 +129,12 @@ impl Outline {
             }
             seen.seen += u32::from(matches!(
                 held,
-                Held::Support | Held::Doubtful | Held::Ended | Held::Open
+                Held::Support | Held::Long | Held::Doubtful | Held::Ended | Held::Open
             ));
             seen.agreeing += match held {
                 Held::Support | Held::Open => 1.0,
                 Held::Ended => ENDED_WEIGHT,
+                Held::Long => LONG_WEIGHT,
                 _ => 0.0,
             };
         }
@@ -149,13 +155,11 @@ impl Outline {
                 || self.distance(Point2::from(edge.range * ray)) < near
         };
         match sight.edges().find(fits) {
-            Some(edge) if edge.width * ray[across].abs() <= 1.0 => {
-                if edge.sure {
-                    Held::Support
-                } else {
-                    Held::Doubtful
-                }
-            }
+            Some(edge) if edge.width * ray[across].abs() <= 1.0 => match (edge.clear, edge.sure) {
+                (true, _) => Held::Support,
+                (false, true) => Held::Long,
+                (false, false) => Held::Doubtful,
+            },
             // A wider edge is not a stripe, but a wall of its colour, or a shadow.
             Some(_) => Held::Silent,
             None if sight.sure().is_some_and(|wall| wall < at) => Held::Against,
@@ -437,6 +441,26 @@ mod tests {
             let agreement = held(closed, &boundary);
             assert!(agreement.least < 0.4, "{closed:?}: {agreement:?}");
         }
+    }
+
+    #[test]
+    fn a_straight_cable_across_a_hallway_is_no_dead_end() {
+        let mut view =
+            DrawnPlace::junction([true, false, true, false], HALF).seen_from([0.0, 0.0], 0.0);
+        for (index, class) in view.classes.iter_mut().enumerate() {
+            let x = GroundView::ground(index).x;
+            let on_cable = (HALF - drawn_place::TAPE..HALF).contains(&x);
+            if on_cable && *class == PixelClass::Floor {
+                *class = PixelClass::Stripe;
+            }
+        }
+        let mut boundary = drawn_place::bearings().look(&view);
+        let (frame, walls) = drawn_place::walls(&boundary).unwrap();
+        let on_wall =
+            |point| walls.iter().any(|wall| wall.confirms(frame.walls_from_robot() * point));
+        boundary.confirm(on_wall);
+        let agreement = held([false, false, true, false], &boundary);
+        assert!(agreement.trust() > 0.9 && agreement.least < 0.6, "{agreement:?}");
     }
 
     #[test]

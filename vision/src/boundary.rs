@@ -56,6 +56,8 @@ pub struct Edge {
     pub range: f64,
     /// Whether it is a stripe without floor behind it, or part of a long straight wall.
     pub sure: bool,
+    /// Whether it is a stripe without floor behind it. A long straight cable has floor behind it.
+    pub clear: bool,
     /// The width of the stripe along the bearing, as a part of the widest possible stripe's.
     pub width: f64,
 }
@@ -160,7 +162,8 @@ impl Bearings {
                         let width = width / widest;
                         let sure =
                             seen && width < AREA_WIDTH && !floor_follows(&classes[step + 1..]);
-                        let edge = Edge { range: range(last as f64 + 0.5), sure, width };
+                        let range = range(last as f64 + 0.5);
+                        let edge = Edge { range, sure, clear: sure, width };
                         let Some(next) = edges.next() else { break };
                         *next = Some(edge);
                         if sure {
@@ -192,7 +195,7 @@ impl Sight {
     }
 
     pub(crate) fn at(range: Option<f64>) -> Self {
-        let edge = range.map(|range| Edge { range, sure: true, width: 0.5 });
+        let edge = range.map(|range| Edge { range, sure: true, clear: true, width: 0.5 });
         let floor = range.unwrap_or_default();
         Self { edges: [edge, None, None], floor, hidden: false }
     }
