@@ -127,7 +127,7 @@ impl Outline {
                 Held::Against => agreement.against += 1,
                 Held::Open | Held::Unseen => {}
             }
-            seen.seen += u32::from(matches!(
+            seen.visible += u32::from(matches!(
                 held,
                 Held::Support | Held::Long | Held::Doubtful | Held::Ended | Held::Open
             ));
@@ -245,15 +245,15 @@ struct Seen {
     doors: u32,
     /// The others.
     due: u32,
-    seen: u32,
+    visible: u32,
     agreeing: f64,
 }
 
 impl Seen {
     fn is_blank(self, every: usize) -> bool {
-        let Self { due, seen, .. } = self;
+        let Self { due, visible, .. } = self;
         f64::from(due) > bearings(NARROW, every)
-            && f64::from(seen) < MIN_DIRECTION_SEEN * f64::from(due)
+            && f64::from(visible) < MIN_DIRECTION_SEEN * f64::from(due)
     }
 
     /// The part of the bearings that agree; 0 if they are few. Doors count if they are in a wall that is seen.
@@ -465,7 +465,7 @@ mod tests {
 
     #[test]
     fn a_direction_of_few_bearings_shows_nothing() {
-        let seen = |all: u32| Seen { all, due: all, seen: all, agreeing: all.into(), doors: 0 };
+        let seen = |all: u32| Seen { all, due: all, visible: all, agreeing: all.into(), doors: 0 };
         assert_eq!([5, 6].map(|all| seen(all).agreement(1)), [0.0, 1.0]);
     }
 

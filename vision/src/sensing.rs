@@ -156,7 +156,10 @@ impl Sensor {
 /// The scene in a ground view, and the results of the steps that lead to it.
 // paper: sense.hallway.first
 fn interpreted(view: &GroundView, bearings: &Bearings) -> (Scene, SensingTrace) {
-    let (place, trace) = place_within(bearings.look(view), margin(bearings.stripe));
+    let (mut place, trace) = place_within(bearings.look(view), margin(bearings.stripe));
+    if let (Place::Junction(view), Some(junction)) = (&mut place, &trace.junction) {
+        view.confidence = junction.confidence_in_image();
+    }
     let junction = match &place {
         Place::Junction(junction) if junction.is_certain() => Some(junction),
         Place::Junction(_) | Place::Hallway(_) | Place::Unknown(_) => None,

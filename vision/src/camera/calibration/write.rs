@@ -66,7 +66,7 @@ pub fn to_toml(camera: &Camera) -> String {
         line("mask", quoted(&mask.file), "white where the floor can be seen");
     }
     let HiddenFloor { radius, polygons } = &camera.hidden;
-    if *radius != HiddenFloor::default().radius {
+    if radius.to_bits() != HiddenFloor::default().radius.to_bits() {
         line("hidden_radius", number(*radius), "metres; the body hides the floor nearer than this");
     }
     if !polygons.is_empty() {
