@@ -19,7 +19,7 @@ const COMMANDS: &str = include_str!("schema.txt");
 
 /// One needs a live robot, the next a build with the feature `cluster`: `tests/cluster.rs` checks its line. The others
 /// are of the program `evaluate`: `simulator/tests/evaluate` checks them.
-const NOT_RUN: [&str; 8] = [
+const NOT_RUN: [&str; 9] = [
     "drive",
     "cluster",
     "evaluate-control",
