@@ -19,12 +19,13 @@ const COMMANDS: &str = include_str!("schema.txt");
 
 /// One needs a live robot, the next a build with the feature `cluster`: `tests/cluster.rs` checks its line. The others
 /// are of the program `evaluate`: `simulator/tests/evaluate` checks them.
-const NOT_RUN: [&str; 8] = [
+const NOT_RUN: [&str; 9] = [
     "drive",
     "cluster",
     "evaluate-control",
     "evaluate-laser",
     "evaluate-lengths",
+    "evaluate-logs",
     "evaluate-mistakes",
     "evaluate-runs",
     "evaluate-vision",

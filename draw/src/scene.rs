@@ -51,8 +51,9 @@ fn junction_rows(junction: &JunctionView) -> Vec<(&'static str, String)> {
         Turning::At => "at its turning point".to_owned(),
         Turning::Past => format!("{:.2} m past its turning point", -distance),
     };
+    let certainty = if junction.is_certain() { "" } else { "possible " };
     vec![
-        ("place", format!("{kind}, {turning}")),
+        ("place", format!("{certainty}{kind}, {turning}")),
         ("doors", doors.join(", ")),
         ("confidence", format!("{:.2}", junction.confidence)),
     ]

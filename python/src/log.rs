@@ -221,7 +221,8 @@ impl Tables {
         let (place, hallway, doors) = match place {
             Place::Hallway(view) => ("hallway", Some(view), Vec::new()),
             Place::Junction(view) => {
-                ("junction", None, view.doors.iter().map(|door| door.direction).collect())
+                let place = if view.is_certain() { "junction" } else { "possible-junction" };
+                (place, None, view.doors.iter().map(|door| door.direction).collect())
             }
             Place::Unknown(_) => ("unknown", None, Vec::new()),
         };

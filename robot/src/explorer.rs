@@ -12,7 +12,9 @@ use toposlam_logs::record::{
 };
 use toposlam_model::{
     driving::{
-        algorithm2::{Command, JunctionState, Lost, LostReason, PathExecution, PathState, Step},
+        algorithm2::{
+            Command, FrameKind, JunctionState, Lost, LostReason, PathExecution, PathState, Step,
+        },
         scene::Scene,
     },
     mapping::{ArrivalMeasurement, MapWalk, MappedWorld, MappingError, MappingEvent},
@@ -242,7 +244,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 Ok(Step::Arrived(_)) | Err(_) => None,
             };
             self.emit(EventKind::Command { state: path.state(), command });
-            match step.map_err(|lost| ExplorerError::Lost { moves, door, lost })? {
+            let frame = self.frame_kind();
+            match step.map_err(|lost| ExplorerError::Lost { moves, door, lost, frame })? {
                 Step::Arrived(state) => return Ok(state),
                 Step::Go(command) => self.carry_out(command)?,
             }
@@ -278,8 +281,18 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 Err(unusable) => last = unusable,
             }
         }
-        let (moves, door, cause) = (self.last_move, self.door, last.to_string());
-        Err(ExplorerError::NoImage { moves, door, images: RETAKES, cause })
+        let frame = self.frame_kind();
+        let cause = match (&last, frame) {
+            (Unusable::Missing, FrameKind::Scan) => "the scanner gives no scan".to_owned(),
+            _ => last.to_string(),
+        };
+        let (moves, door) = (self.last_move, self.door);
+        Err(ExplorerError::NoImage { moves, door, images: RETAKES, cause, frame })
+    }
+
+    /// What the robot takes to see where it is.
+    fn frame_kind(&mut self) -> FrameKind {
+        if self.sensor.scanner().is_some() { FrameKind::Scan } else { FrameKind::Image }
     }
 
     /// A frame that was taken since the robot last moved, and its scene. If the frame does not show enough, the robot

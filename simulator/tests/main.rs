@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
+mod housing;
 mod laser;
 mod recorded;
 mod recorder;
@@ -9,5 +10,4 @@ mod renderer;
 mod replay;
 mod rim;
 mod scanner;
-mod self_judged;
 mod sensing;

@@ -27,6 +27,7 @@ pub enum SceneLine {
         centre_lines: Vec<[f64; 3]>,
         turning_point: TurningLine,
         confidence: f64,
+        certain: bool,
         marker: Option<MarkerLine>,
     },
     Unknown {
@@ -78,6 +79,7 @@ impl From<&Scene> for SceneLine {
                         distance: rounded(junction.distance()),
                     },
                     confidence: rounded(junction.confidence),
+                    certain: junction.is_certain(),
                     marker,
                 }
             }
@@ -158,7 +160,7 @@ mod tests {
             json(&scene),
             r#"{"scene":"junction","degree":3,"doors":[3.141592,1.570796,0.0],"#.to_owned()
                 + r#""centre_lines":[[0.42,0.0,3.141592],[0.42,0.0,1.570796],[0.42,0.0,0.0]],"#
-                + r#""turning_point":{"state":"before","distance":0.42},"confidence":0.9,"#
+                + r#""turning_point":{"state":"before","distance":0.42},"confidence":0.9,"certain":true,"#
                 + r#""marker":{"position":[0.4,-0.1],"axis":0.0,"door":1}}"#
         );
         assert_eq!(

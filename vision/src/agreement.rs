@@ -19,6 +19,11 @@ const THROUGH_WEIGHT: f64 = 1.5;
 const AGAINST_WEIGHT: f64 = 3.0;
 /// The most bearings with a wall in front of the outline, as a part of those in support. Views.
 const MAX_AGAINST: f64 = 0.12;
+/// Weight of a bearing on which a long wall is seen with floor behind it, for what agrees in its direction. Views: a wall
+/// may have the floor's colour, but a straight cable looks like it.
+const LONG_WEIGHT: f64 = 0.5;
+/// Weight of a bearing on which floor is seen through a door, for what agrees in its direction. Views.
+const DOOR_WEIGHT: f64 = 0.5;
 /// The most bearings with doors, as a multiple of those in support. Views.
 const MAX_DOORS: f64 = 2.0;
 /// Walls farther away are not expected to be seen. Geometry: a pixel of the image covers as much there as a stripe.
@@ -27,6 +32,8 @@ const MAX_RANGE: f64 = 2.1;
 const NARROW: f64 = 0.02;
 /// In any other direction, at least this part of the bearings must be seen. Views.
 const MIN_DIRECTION_SEEN: f64 = 0.25;
+/// Fewer bearings in a direction show nothing of it. Geometry: 3 degrees.
+const FEW_BEARINGS: f64 = 6.0 / BEARINGS as f64;
 /// A bearing is open if floor is seen for this part of the way. Views.
 const OPEN: f64 = 0.8;
 /// A gap in a wall is a door if it is narrower than this part of a hallway. Geometry.
@@ -39,7 +46,7 @@ const DOOR_WALL: f64 = 0.30;
 const DOOR_WALL_SEEN: f64 = 0.75;
 
 /// How an outline agrees with what is seen: the number of bearings of each kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OutlineAgreement {
     pub support: u32,
     /// The floor ends at the wall of the outline, but without a stripe: at a door or a gap.
@@ -53,11 +60,18 @@ pub struct OutlineAgreement {
     pub against: u32,
     /// The number of the four directions in which neither its wall nor its floor is seen.
     pub blank: u32,
+    /// Of the four directions, the one in which least agrees: the part of its bearings on which its wall or its floor is
+    /// seen, from 0 to 1. The walls of a hallway support a junction in it, too: only this shows whether an arm is there.
+    pub least: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Held {
     Support,
+    /// A long straight wall is seen where the outline has one, but floor behind it.
+    Long,
+    /// The wall of the outline may be seen, or something on the floor: floor is seen behind it.
+    Doubtful,
     Ended,
     Silent,
     Through,
@@ -101,9 +115,11 @@ impl Outline {
                 gap = Some(around);
             }
             let seen = &mut towards[side.towards];
+            seen.all += 1;
+            seen.doors += u32::from(held == Held::Door);
             seen.due += u32::from(held != Held::Door);
             match held {
-                Held::Support => agreement.support += 1,
+                Held::Support | Held::Long | Held::Doubtful => agreement.support += 1,
                 Held::Ended => agreement.ended += 1,
                 Held::Silent => agreement.silent += 1,
                 Held::Door => agreement.door += 1,
@@ -111,9 +127,19 @@ impl Outline {
                 Held::Against => agreement.against += 1,
                 Held::Open | Held::Unseen => {}
             }
-            seen.seen += u32::from(matches!(held, Held::Support | Held::Ended | Held::Open));
+            seen.visible += u32::from(matches!(
+                held,
+                Held::Support | Held::Long | Held::Doubtful | Held::Ended | Held::Open
+            ));
+            seen.agreeing += match held {
+                Held::Support | Held::Open => 1.0,
+                Held::Ended => ENDED_WEIGHT,
+                Held::Long => LONG_WEIGHT,
+                _ => 0.0,
+            };
         }
         agreement.blank = towards.iter().filter(|seen| seen.is_blank(every)).count() as u32;
+        agreement.least = towards.iter().map(|seen| seen.agreement(every)).fold(1.0, f64::min);
         agreement
     }
 
@@ -129,11 +155,21 @@ impl Outline {
                 || self.distance(Point2::from(edge.range * ray)) < near
         };
         match sight.edges().find(fits) {
-            Some(edge) if edge.width * ray[across].abs() <= 1.0 => Held::Support,
+            Some(edge) if edge.width * ray[across].abs() <= 1.0 => match (edge.clear, edge.sure) {
+                (true, _) => Held::Support,
+                (false, true) => Held::Long,
+                (false, false) => Held::Doubtful,
+            },
             // A wider edge is not a stripe, but a wall of its colour, or a shadow.
             Some(_) => Held::Silent,
             None if sight.sure().is_some_and(|wall| wall < at) => Held::Against,
-            None if is_wall && before(sight.floor).abs() < near(at) => Held::Ended,
+            None if is_wall && before(sight.floor).abs() < near(at) => {
+                if sight.hidden {
+                    Held::Silent
+                } else {
+                    Held::Ended
+                }
+            }
             None if is_wall && before(sight.floor) < -near(at) => Held::Through,
             None if is_wall => Held::Silent,
             None if sight.floor >= OPEN * at => Held::Open,
@@ -200,18 +236,31 @@ struct Gap {
     to: f64,
 }
 
-/// The number of bearings on which something should be seen, and on which it is.
+/// The number of bearings in a direction: all, those on which something should be seen, those on which it is, and the
+/// weight of those that agree.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
+    all: u32,
+    /// Those that look through a door.
+    doors: u32,
+    /// The others.
     due: u32,
-    seen: u32,
+    visible: u32,
+    agreeing: f64,
 }
 
 impl Seen {
     fn is_blank(self, every: usize) -> bool {
-        let Self { due, seen } = self;
+        let Self { due, visible, .. } = self;
         f64::from(due) > bearings(NARROW, every)
-            && f64::from(seen) < MIN_DIRECTION_SEEN * f64::from(due)
+            && f64::from(visible) < MIN_DIRECTION_SEEN * f64::from(due)
+    }
+
+    /// The part of the bearings that agree; 0 if they are few. Doors count if they are in a wall that is seen.
+    fn agreement(self, every: usize) -> f64 {
+        let [all, doors] = [self.all, self.doors].map(f64::from);
+        let doors = if doors <= MAX_DOORS * self.agreeing { DOOR_WEIGHT * doors } else { 0.0 };
+        if all < bearings(FEW_BEARINGS, every) { 0.0 } else { (self.agreeing + doors) / all }
     }
 }
 
@@ -364,6 +413,76 @@ mod tests {
         let outline = Outline::hallway(Axis::X, SQUARE, -0.6, 0.6);
         let agreement = agreement(&outline, &boundary);
         assert!(agreement.door == 0 && agreement.through > 60, "{agreement:?}");
+    }
+
+    #[test]
+    fn a_hallway_supports_a_junction_in_it_but_not_its_arm() {
+        let hallway = [true, false, true, false];
+        let t = [true, true, true, false];
+        for (place, least) in [(t, 0.9..=1.0), (hallway, 0.0..=0.2)] {
+            let agreement = held(t, &seen(&DrawnPlace::junction(place, HALF)));
+            assert!(least.contains(&agreement.least), "{place:?}: {agreement:?}");
+        }
+    }
+
+    #[test]
+    fn a_cable_on_the_floor_of_an_opening_is_no_wall() {
+        let t = [true, true, true, false];
+        let mut view = DrawnPlace::junction(t, HALF).seen_from([0.0, 0.0], 0.0);
+        for (index, class) in view.classes.iter_mut().enumerate() {
+            let [x, y] = GroundView::ground(index).into();
+            let on_cable = (HALF - drawn_place::TAPE..HALF).contains(&y) && x.abs() < 0.5;
+            if on_cable && *class == PixelClass::Floor {
+                *class = PixelClass::Stripe;
+            }
+        }
+        let boundary = drawn_place::bearings().look(&view);
+        for closed in [[true, false, true, true], [false, false, true, false]] {
+            let agreement = held(closed, &boundary);
+            assert!(agreement.least < 0.4, "{closed:?}: {agreement:?}");
+        }
+    }
+
+    #[test]
+    fn a_straight_cable_across_a_hallway_is_no_dead_end() {
+        let mut view =
+            DrawnPlace::junction([true, false, true, false], HALF).seen_from([0.0, 0.0], 0.0);
+        for (index, class) in view.classes.iter_mut().enumerate() {
+            let x = GroundView::ground(index).x;
+            let on_cable = (HALF - drawn_place::TAPE..HALF).contains(&x);
+            if on_cable && *class == PixelClass::Floor {
+                *class = PixelClass::Stripe;
+            }
+        }
+        let mut boundary = drawn_place::bearings().look(&view);
+        let (frame, walls) = drawn_place::walls(&boundary).unwrap();
+        let on_wall =
+            |point| walls.iter().any(|wall| wall.confirms(frame.walls_from_robot() * point));
+        boundary.confirm(on_wall);
+        let agreement = held([false, false, true, false], &boundary);
+        assert!(agreement.trust() > 0.9 && agreement.least < 0.6, "{agreement:?}");
+    }
+
+    #[test]
+    fn a_direction_of_few_bearings_shows_nothing() {
+        let seen = |all: u32| Seen { all, due: all, visible: all, agreeing: all.into(), doors: 0 };
+        assert_eq!([5, 6].map(|all| seen(all).agreement(1)), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn doors_count_in_a_wall_that_is_seen() {
+        let seen = |wall: u32, doors| Seen {
+            all: wall + doors,
+            agreeing: wall.into(),
+            doors,
+            ..Seen::default()
+        };
+        let agreement = |wall, doors| seen(wall, doors).agreement(1);
+        assert_eq!(
+            [agreement(60, 0), agreement(30, 30), agreement(20, 40)],
+            [1.0, 0.75, 2.0 / 3.0]
+        );
+        assert!(agreement(19, 41) < 1.0 / 3.0);
     }
 
     #[test]

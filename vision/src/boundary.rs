@@ -47,6 +47,8 @@ pub struct Sight {
     edges: [Option<Edge>; EDGES],
     /// The range of the farthest floor, in metres; 0 without floor. Nothing is seen behind a sure edge.
     pub floor: f64,
+    /// Whether the floor is hidden there, by the robot's body or what carries its camera, so that it need not end.
+    pub hidden: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +56,8 @@ pub struct Edge {
     pub range: f64,
     /// Whether it is a stripe without floor behind it, or part of a long straight wall.
     pub sure: bool,
+    /// Whether it is a stripe without floor behind it. A long straight cable has floor behind it.
+    pub clear: bool,
     /// The width of the stripe along the bearing, as a part of the widest possible stripe's.
     pub width: f64,
 }
@@ -137,7 +141,14 @@ impl Bearings {
                         step += 1;
                     }
                     let width = (step + 1 - from) as f64;
+                    // The border of what is hidden looks like a stripe, and a stripe that is partly hidden does not
+                    // show where the floor ends.
+                    let before =
+                        floor.map_or(0, |floor| floor + 1).max(from.saturating_sub(MIXED_STEPS));
+                    let is_hidden =
+                        is_hidden(&classes[before..from]) || is_hidden(after(classes, step));
                     if let Some(floor) = floor
+                        && !is_hidden
                         && width >= MIN_STRIPE_WIDTH * self.width[from]
                     {
                         // The edge is at the end of the floor's last pixel. Floor that was taken for
@@ -151,7 +162,8 @@ impl Bearings {
                         let width = width / widest;
                         let sure =
                             seen && width < AREA_WIDTH && !floor_follows(&classes[step + 1..]);
-                        let edge = Edge { range: range(last as f64 + 0.5), sure, width };
+                        let range = range(last as f64 + 0.5);
+                        let edge = Edge { range, sure, clear: sure, width };
                         let Some(next) = edges.next() else { break };
                         *next = Some(edge);
                         if sure {
@@ -167,6 +179,7 @@ impl Bearings {
             step += 1;
         }
         sight.floor = floor.map_or(0.0, |floor| range(floor as f64 + 0.5));
+        sight.hidden = floor.is_some_and(|floor| is_hidden(after(classes, floor)));
         sight
     }
 }
@@ -182,8 +195,9 @@ impl Sight {
     }
 
     pub(crate) fn at(range: Option<f64>) -> Self {
-        let edge = range.map(|range| Edge { range, sure: true, width: 0.5 });
-        Self { edges: [edge, None, None], floor: range.unwrap_or_default() }
+        let edge = range.map(|range| Edge { range, sure: true, clear: true, width: 0.5 });
+        let floor = range.unwrap_or_default();
+        Self { edges: [edge, None, None], floor, hidden: false }
     }
 
     pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
@@ -193,6 +207,17 @@ impl Sight {
     pub fn sure(&self) -> Option<f64> {
         self.edges().find(|edge| edge.sure).map(|edge| edge.range)
     }
+}
+
+/// The next steps behind one, in which colours mix.
+fn after(classes: &[PixelClass], step: usize) -> &[PixelClass] {
+    let behind = &classes[step + 1..];
+    &behind[..behind.len().min(MIXED_STEPS)]
+}
+
+/// Whether a part of these steps is hidden.
+fn is_hidden(classes: &[PixelClass]) -> bool {
+    classes.contains(&PixelClass::Unseen)
 }
 
 /// Whether floor goes on behind a stripe; more stripe does not matter.

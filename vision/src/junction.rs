@@ -6,7 +6,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Vector2, distance};
-use toposlam_model::driving::scene::{CentreLine, JunctionView, wrapped};
+use toposlam_model::driving::scene::{CERTAIN, CentreLine, JunctionView, wrapped};
 
 use crate::{
     agreement::{OutlineAgreement, bearings},
@@ -202,7 +202,12 @@ impl FittedJunction {
             .next()
     }
 
-    /// The junction in a scene: its doors clockwise from the one behind.
+    /// The confidence in a junction that an image shows. Patterns on the floor look like walls, so each direction counts.
+    pub fn confidence_in_image(&self) -> f64 {
+        self.agreement.confidence().min(self.agreement.least)
+    }
+
+    /// The junction in a scene: its doors clockwise from the one behind. What a scanner shows is certain.
     // paper: sense.junction.entry, sense.centre-lines
     pub fn view(&self) -> JunctionView {
         let turning_point = (self.frame.robot_from_walls() * self.square.middle).into();
@@ -210,7 +215,7 @@ impl FittedJunction {
             through: turning_point,
             direction: wrapped(self.frame.angle() + number as f64 * FRAC_PI_2),
         });
-        let confidence = self.agreement.confidence();
+        let confidence = self.agreement.confidence().max(CERTAIN);
         JunctionView { doors: doors.collect(), turning_point, confidence }
             .entered_from(std::f64::consts::PI)
     }

@@ -5,7 +5,7 @@ use nalgebra::{Isometry2, Point2};
 use thiserror::Error;
 use toposlam_model::driving::{
     odometry::Odometry,
-    scene::{Place, Reason, Scene},
+    scene::{JunctionView, Place, Reason, Scene},
 };
 
 use crate::{
@@ -20,7 +20,7 @@ use crate::{
     junction::{FittedJunction, JunctionSearch, junction},
     line::{WallLine, lines},
     marker::marker,
-    place::{PlaceArm, PlaceSensor, PlaceView, SeenPlace, ViewSector},
+    place::{Certainty, PlaceArm, PlaceSensor, PlaceView, SeenPlace, ViewSector},
     wall::{WallFrame, WallSegment},
 };
 
@@ -49,21 +49,26 @@ impl PlaceSensor for SceneSensor {
     type Frame = Scene;
 
     fn view(&mut self, scene: &Scene, odometry: &Odometry) -> Option<PlaceView> {
-        let places = match &scene.place {
-            Place::Junction(junction) => {
-                let doors = junction.doors.iter().map(|door| odometry.whither(door.direction));
-                let centre = from_robot(odometry) * Point2::from(junction.turning_point);
-                let arms = doors.map(PlaceArm::certain).collect();
-                vec![SeenPlace { centre, clearance: 0.0, arms }]
+        let place = |junction: &JunctionView, certainty| {
+            let doors = junction.doors.iter().map(|door| odometry.whither(door.direction));
+            let centre = from_robot(odometry) * Point2::from(junction.turning_point);
+            let arms = doors.map(|direction| PlaceArm { direction, certainty }).collect();
+            SeenPlace { centre, clearance: 0.0, arms }
+        };
+        let (places, possible_places) = match &scene.place {
+            Place::Junction(junction) if junction.is_certain() => {
+                let place = place(junction, Certainty::Certain);
+                (vec![place.clone()], vec![place])
             }
-            Place::Hallway(_) | Place::Unknown(_) => Vec::new(),
+            Place::Junction(junction) => (Vec::new(), vec![place(junction, Certainty::Possible)]),
+            Place::Hallway(_) | Place::Unknown(_) => (Vec::new(), Vec::new()),
         };
         Some(PlaceView {
             robot: *odometry,
             odometry_from_map: Isometry2::identity(),
-            possible_places: places.clone(),
-            facts: None,
             places,
+            possible_places,
+            facts: None,
             sector: ViewSector::ALL_AROUND,
             width: None,
             scene: Some(scene.clone()),
@@ -151,10 +156,13 @@ impl Sensor {
 /// The scene in a ground view, and the results of the steps that lead to it.
 // paper: sense.hallway.first
 fn interpreted(view: &GroundView, bearings: &Bearings) -> (Scene, SensingTrace) {
-    let (place, trace) = place_within(bearings.look(view), margin(bearings.stripe));
+    let (mut place, trace) = place_within(bearings.look(view), margin(bearings.stripe));
+    if let (Place::Junction(view), Some(junction)) = (&mut place, &trace.junction) {
+        view.confidence = junction.confidence_in_image();
+    }
     let junction = match &place {
-        Place::Junction(junction) => Some(junction),
-        Place::Hallway(_) | Place::Unknown(_) => None,
+        Place::Junction(junction) if junction.is_certain() => Some(junction),
+        Place::Junction(_) | Place::Hallway(_) | Place::Unknown(_) => None,
     };
     let boundary = trace.boundary.as_ref();
     let marker = boundary.and_then(|boundary| marker(view, boundary, junction));

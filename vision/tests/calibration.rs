@@ -53,7 +53,7 @@ const MIRROR_ERRORS: &str = r#"
 "below" | "beneath" | line 12, column 13: camera.seen_from: expected "below" or "above", found another text
 "spherical-mirror" | "mirror" | line 3, column 8: camera.kind: expected "spherical-mirror" or "ocamcalib" or "mei" or "kannala-brandt", found another text
 kind = "spherical-mirror" |  | line 2, column 2: camera: the key `kind` is missing
-focal = 1272.8  | focus = 1272.8 | line 6, column 1: camera.focus: unknown key; expected one of: kind, image, ahead, seen_from, mask, centre, focal, mirror_radius, mirror_distance, camera_height, rim
+focal = 1272.8  | focus = 1272.8 | line 6, column 1: camera.focus: unknown key; expected one of: kind, image, ahead, seen_from, mask, hidden_radius, hide, centre, focal, mirror_radius, mirror_distance, camera_height, rim
 focal = 1272.8  |  | line 2, column 2: camera: the key `focal` is missing
 focal = 1272.8  | focal = "long" | line 6, column 9: camera.focal: expected a number, found a text
 focal = 1272.8  | focal = -3 | line 6, column 9: camera.focal: -3 is out of range; a focal length in pixels lies between 1 and 1000000
@@ -67,6 +67,10 @@ focal = 1272.8  | focal = 1272.8 # much\nfocal = 2 | line 7, column 1: duplicate
 = 0.90  | = 90 | line 9, column 17: camera.camera_height: 90 is out of range; a height above the floor in metres lies between 0.01 and 10
 rim = 450.0 | rim = 460.0 | line 10, column 7: camera.rim: 460 pixels do not agree with focal, mirror_radius and mirror_distance, which give a rim of 450.0; they must agree within 2 %
 ahead = 90.0 | ahead = 1e3 | line 11, column 9: camera.ahead: 1000 is out of range; an angle in degrees lies between -360 and 360
+ahead = 90.0 | ahead = 90.0\nhidden_radius = 2 | line 12, column 17: camera.hidden_radius: 2 is out of range; a radius in metres lies between 0 and 1.5
+ahead = 90.0 | ahead = 90.0\nhide = [[1, 2]] | line 12, column 10: camera.hide[0][0]: expected a corner of two numbers, found a whole number
+ahead = 90.0 | ahead = 90.0\nhide = [[[1, 2], [3, 4]]] | line 12, column 9: camera.hide[0]: a polygon has at least 3 corners, this one has 2
+ahead = 90.0 | ahead = 90.0\nhide = [[[1, 2], [3, nan]]] | line 12, column 22: camera.hide[0][1][1]: NaN is out of range; a corner in pixels lies between -100000 and 100000
 [camera] | [[camera]] | line 2, column 1: camera: expected a table, found a list
 [camera] | colour = 1\n[camera] | line 2, column 1: colour: unknown key; expected one of: camera
 [camera] | [camera | line 2, column 8:"#;
@@ -152,7 +156,7 @@ fn an_error_in_ocamcalibs_file_has_its_line() {
             "rim = 450",
             results.as_bytes(),
             "line 2, column 1: camera.rim: unknown key; expected one of: kind, image, ahead, seen_from, mask, \
-             file, viewpoint_height",
+             hidden_radius, hide, file, viewpoint_height",
         ),
     ] {
         let toml = changed(&toml, "[camera]", &format!("[camera]\n{key}"));

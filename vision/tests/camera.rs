@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector3};
 use proptest::prelude::*;
 use toposlam_vision::{
     camera::{
-        Camera, Mask, OpticsModel, SeenFrom, SphericalMirror,
+        Camera, Mask, OpticsModel, Polygon, SeenFrom, SphericalMirror,
         calibration::{self, CalibrationError},
     },
     geometry::distance,
@@ -211,6 +211,37 @@ fn a_mask_gives_the_pixels_in_which_the_floor_is_seen() {
 }
 
 #[test]
+fn what_a_calibration_hides_is_not_seen_and_the_hidden_radius_follows() {
+    let camera = |more: &str| {
+        let text = format!("{}{more}", calibration::to_toml(&Camera::superscout()));
+        calibration::read(text.as_bytes(), &mut |_| unreachable!()).unwrap()
+    };
+    let corners = "[[600, 300], [700, 300], [700, 350], [600, 350]]";
+    let drawn = camera(&format!("hidden_radius = 0.4\nhide = [{corners}]\n"));
+    let sees = |camera: &Camera, ground: [f64; 2]| camera.seen_pixel(ground.into()).is_some();
+    assert!(!sees(&drawn, [0.39, 0.0]) && sees(&drawn, [0.41, 0.0]));
+    assert!(!drawn.sees([650, 320]) && drawn.sees([650, 360]) && drawn.sees([590, 320]));
+    let half = drawn.sized([640, 480]);
+    assert!(!half.sees([325, 160]) && half.sees([325, 181]));
+    let again = calibration::read(calibration::to_toml(&drawn).as_bytes(), &mut |_| unreachable!());
+    assert_eq!(again.unwrap(), drawn);
+    // A small polygon does not move the ring in which the floor is measured, one all round does.
+    assert!((Camera::superscout().hidden_radius() - 0.32).abs() < 1e-12);
+    assert!((drawn.hidden_radius() - 0.4).abs() < 0.011, "{}", drawn.hidden_radius());
+    let round = |range: f64| {
+        let superscout = Camera::superscout();
+        let corner = |nth: u32| {
+            let (y, x) = (f64::from(nth) * std::f64::consts::TAU / 60.0).sin_cos();
+            let [u, v] = superscout.ground_to_pixel([range * x, range * y]).unwrap().into();
+            format!("[{u:.2}, {v:.2}]")
+        };
+        (0..60).map(corner).collect::<Vec<_>>().join(", ")
+    };
+    let housing = camera(&format!("hide = [[{}]]\n", round(0.8)));
+    assert!((housing.hidden_radius() - 0.8).abs() < 0.02, "{}", housing.hidden_radius());
+}
+
+#[test]
 fn an_image_twice_as_large_shows_the_same_in_twice_as_many_pixels() {
     for name in ["superscout.toml", "ocamcalib.toml", "camodocal.toml", "omnidir.toml"] {
         let camera = camera(name);
@@ -401,7 +432,9 @@ fn a_mask_hides_a_drawn_polygon_inside_of_the_rim() {
     let mut mask = Mask::circle("m", [20, 10], [9.0, 5.0].into(), 4.5);
     assert!(mask.sees([13, 5]) && !mask.sees([14, 5]) && !mask.sees([9, 0]));
     // An arrow's head: its notch is seen.
-    mask.hide(&[[5.5, 2.5], [12.5, 2.5], [9.0, 4.8], [12.5, 7.5], [5.5, 7.5]]);
+    let corners = [[5.5, 2.5], [12.5, 2.5], [9.0, 4.8], [12.5, 7.5], [5.5, 7.5]];
+    let polygon = Polygon::from_corners(corners.to_vec()).unwrap();
+    mask.hide(|pixel| polygon.contains(pixel));
     assert!(!mask.sees([6, 5]) && !mask.sees([11, 3]) && mask.sees([11, 5]) && mask.sees([9, 8]));
 }
 

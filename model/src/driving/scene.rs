@@ -59,9 +59,13 @@ pub struct JunctionView {
     /// The doors, clockwise from the entry door, and their centre lines; never empty.
     pub doors: Vec<CentreLine>,
     pub turning_point: [f64; 2],
-    /// How well the view fits, from 0 to 1.
+    /// How well the view fits, from 0 to 1, in the direction in which it fits least.
     pub confidence: f64,
 }
+
+/// With less confidence a junction is only possible: furniture in a hallway looks like one. Views: on half of the
+/// bearings in each direction, a junction never was another one or none.
+pub const CERTAIN: f64 = 0.6;
 
 /// The middle of a hallway that ends at a junction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +120,11 @@ pub fn undirected(angle: f64) -> f64 {
 }
 
 impl JunctionView {
+    /// Whether this is a junction with these doors. Otherwise it may be another junction, or none.
+    pub fn is_certain(&self) -> bool {
+        self.confidence >= CERTAIN
+    }
+
     /// How far the turning point is along the entry centre line, in metres: positive before it.
     pub fn distance(&self) -> f64 {
         let [x, y] = self.turning_point;

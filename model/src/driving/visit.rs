@@ -1,7 +1,8 @@
 //! The estimate of a junction from the images of one approach. Sections 3 and 5.1.
 //!
 //! One image can be wrong. A visit is decided when two agree on the junction's form; the marker is taken
-//! from the best view of the approach, for beside the turning point the robot's body hides it.
+//! from the best view of the approach, for beside the turning point the robot's body hides it. Images in which
+//! the junction is only possible do not count: they all show the same furniture.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::ops::RangeInclusive;
@@ -115,14 +116,14 @@ impl JunctionEstimate {
     pub fn add_scene(&mut self, scene: &Scene) {
         let entry = match &scene.place {
             Place::Hallway(hallway) => Some(hallway.heading),
-            Place::Junction(junction) => {
+            Place::Junction(junction) if junction.is_certain() => {
                 if let Some(shape) = JunctionShape::from_view(junction) {
                     self.shapes[shape.code()] += 1;
                 }
                 self.looked |= APPROACH.contains(&junction.distance());
                 junction.doors.first().map(|entry| entry.direction)
             }
-            Place::Unknown(_) => None,
+            Place::Junction(_) | Place::Unknown(_) => None,
         };
         if let (Some(entry), Some(marker)) = (entry, &scene.marker) {
             self.glimpse(entry, marker);
@@ -169,7 +170,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::driving::scene::{CentreLine, HallwayStatus, HallwayView, Reason};
+    use crate::driving::scene::{CERTAIN, CentreLine, HallwayStatus, HallwayView, Reason};
 
     fn junction(doors: &[f64], distance: f64) -> Place {
         let through = [distance, 0.0];
@@ -215,6 +216,16 @@ mod tests {
         }
         let decided = seen(&[l.clone(), t, unknown, l], None).percept();
         assert_eq!(decided, Some(Percept { degree: 2, sighting: Sighting::Nothing }));
+    }
+
+    #[test]
+    fn images_in_which_a_junction_is_only_possible_decide_nothing() {
+        let Place::Junction(certain) = junction(&[PI], 0.3) else { unreachable!() };
+        let possible = JunctionView { confidence: CERTAIN - 0.01, ..certain.clone() };
+        let [certain, possible] = [certain, possible].map(Place::Junction);
+        assert_eq!(seen(&vec![possible.clone(); 9], None), JunctionEstimate::default());
+        assert_eq!(seen(&[certain.clone(), possible.clone()], None).shape(), None);
+        assert!(seen(&[certain.clone(), possible, certain], None).shape().is_some());
     }
 
     // paper: marker-sense.place

@@ -3,7 +3,7 @@
 use thiserror::Error;
 use toposlam_model::{
     counts::counted,
-    driving::algorithm2::{Lost, LostReason},
+    driving::algorithm2::{FrameKind, Lost, LostReason},
     percept::Door,
 };
 
@@ -13,11 +13,11 @@ use crate::{budget::BudgetLimit, robot::RobotError};
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ExplorerError {
     /// The robot does not know where it is.
-    #[error("on move {moves}, {}: {lost}", by_door(*.door))]
-    Lost { moves: u64, door: Option<Door>, lost: Lost },
-    /// The camera gives no usable image. `cause` is what is wrong with the last one.
-    #[error("on move {moves}, {}: {images} unusable images in a row: {cause}", by_door(*.door))]
-    NoImage { moves: u64, door: Option<Door>, images: u32, cause: String },
+    #[error("on move {moves}, {}: {}", by_door(*.door), .lost.with(*.frame))]
+    Lost { moves: u64, door: Option<Door>, lost: Lost, frame: FrameKind },
+    /// The camera gives no usable image, or the scanner no usable scan. `cause` is what is wrong with the last one.
+    #[error("on move {moves}, {}: {images} unusable {frame}s in a row: {cause}", by_door(*.door))]
+    NoImage { moves: u64, door: Option<Door>, images: u32, cause: String, frame: FrameKind },
     #[error("the robot is at a junction with {}; a run starts at an L", counted(*.degree as usize, "door"))]
     NotAnL { degree: u32 },
     #[error(transparent)]

@@ -109,6 +109,7 @@ pub enum SceneClass {
     Junction(JunctionShape),
     /// A junction with none of the [`JUNCTION_SHAPES`](toposlam_model::driving::visit::JUNCTION_SHAPES).
     Other,
+    /// A junction that is only possible is unknown, too.
     Unknown,
 }
 
@@ -117,6 +118,7 @@ impl SceneClass {
         match &scene.place {
             Place::Hallway(_) => Self::Hallway,
             Place::Unknown(_) => Self::Unknown,
+            Place::Junction(junction) if !junction.is_certain() => Self::Unknown,
             Place::Junction(junction) => JunctionShape::from_view(junction)
                 .filter(|shape| shape.name().is_some())
                 .map_or(Self::Other, Self::Junction),

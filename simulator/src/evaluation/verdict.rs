@@ -21,6 +21,9 @@ toposlam_model::words! {
     /// The verdict on a scene's place.
     PlaceVerdict {
         Right = "right",
+        /// The junction is right, but only possible.
+        Possible = "possible",
+        /// So is a junction that is only possible and not right.
         Unknown = "unknown",
         /// A junction was reported as a hallway.
         HallwayForJunction = "hallway-for-junction",
@@ -41,7 +44,7 @@ impl PlaceVerdict {
     pub fn verdict(self) -> SampleVerdict {
         match self {
             Self::Right => SampleVerdict::Right,
-            Self::Unknown => SampleVerdict::Undecided,
+            Self::Possible | Self::Unknown => SampleVerdict::Undecided,
             _ => SampleVerdict::Wrong,
         }
     }
@@ -74,7 +77,17 @@ pub enum MarkerVerdict {
 const MARKER_OFF: f64 = 0.15;
 
 pub fn judge(truth: &Truth, scene: &Scene) -> PlaceVerdict {
-    match (truth, &scene.place) {
+    match (judge_place(truth, &scene.place), &scene.place) {
+        (PlaceVerdict::Right, Place::Junction(view)) if !view.is_certain() => {
+            PlaceVerdict::Possible
+        }
+        (_, Place::Junction(view)) if !view.is_certain() => PlaceVerdict::Unknown,
+        (verdict, _) => verdict,
+    }
+}
+
+fn judge_place(truth: &Truth, place: &Place) -> PlaceVerdict {
+    match (truth, place) {
         (_, Place::Unknown(_)) => PlaceVerdict::Unknown,
         (Truth::Hallway(_) | Truth::Between(..), Place::Hallway(_)) => PlaceVerdict::Right,
         (Truth::Junction(_), Place::Hallway(_)) => PlaceVerdict::HallwayForJunction,
@@ -219,6 +232,21 @@ pub(super) mod tests {
 
     pub(in crate::evaluation) fn at_junction(doors: &[f64], turning_point: [f64; 2]) -> Place {
         Place::Junction(view(doors, turning_point))
+    }
+
+    #[test]
+    fn a_junction_that_is_only_possible_is_never_wrong() {
+        let entered = Truth::Junction(junction(&[PI, FRAC_PI_2], Some(L), 0.4));
+        for (truth, doors, verdict) in [
+            (&entered, &[PI, FRAC_PI_2][..], PlaceVerdict::Possible),
+            (&entered, &[PI], PlaceVerdict::Unknown),
+            (&Truth::Hallway(HALLWAY), &[PI], PlaceVerdict::Unknown),
+        ] {
+            let view = JunctionView { confidence: 0.5, ..view(doors, [0.4, 0.0]) };
+            let scene = Scene { place: Place::Junction(view), marker: None };
+            assert_eq!(judge(truth, &scene), verdict, "{doors:?}");
+            assert_eq!(verdict.verdict(), SampleVerdict::Undecided);
+        }
     }
 
     #[test]

@@ -16,6 +16,7 @@ const LENIENCE: f64 = 3.0;
 const NOT_DECIDED: &str = "not decided";
 const KIND_OR_ENTRY_WRONG: &str = "kind or entry wrong";
 const NOT_RIGHT: &str = "kind and entry not right";
+const ONLY_POSSIBLE: &str = "right, but only possible";
 
 /// The figures of these views and visits.
 pub fn figures(views: &[JudgedView], visits: &[JudgedVisit], calibration: Calibration) -> Figures {
@@ -48,15 +49,19 @@ pub fn figures(views: &[JudgedView], visits: &[JudgedVisit], calibration: Calibr
 }
 
 fn places(views: &[JudgedView]) -> Vec<Rate> {
-    let not_right: fn(PlaceVerdict) -> bool = |verdict| verdict != PlaceVerdict::Right;
+    let not_right: fn(PlaceVerdict) -> bool =
+        |verdict| !matches!(verdict, PlaceVerdict::Right | PlaceVerdict::Possible);
+    let possible: fn(PlaceVerdict) -> bool = |verdict| verdict == PlaceVerdict::Possible;
     let unknown: fn(PlaceVerdict) -> bool = |verdict| verdict == PlaceVerdict::Unknown;
     let wrong: fn(PlaceVerdict) -> bool = PlaceVerdict::is_wrong;
     let rates = [
         (Zone::Hallway, "hallway", "not called hallway", not_right, Some(0.005)),
         (Zone::Hallway, "hallway", "called junction", wrong, Some(0.0005)),
         (Zone::Before, "junction", NOT_RIGHT, not_right, Some(0.01)),
+        (Zone::Before, "junction", ONLY_POSSIBLE, possible, Some(0.02)),
         (Zone::Before, "junction", KIND_OR_ENTRY_WRONG, wrong, Some(0.001)),
         (Zone::Between, "between", "unknown", unknown, None),
+        (Zone::Between, "between", ONLY_POSSIBLE, possible, None),
         (Zone::Between, "between", KIND_OR_ENTRY_WRONG, wrong, None),
         (Zone::Past, "past", NOT_RIGHT, not_right, None),
         (Zone::Past, "past", KIND_OR_ENTRY_WRONG, wrong, None),

@@ -54,7 +54,7 @@ pub(crate) struct RigOptics {
 enum Kind {
     UnderSphere(UnderSphere),
     /// A camera with a single viewpoint.
-    Single(Camera),
+    Single(Box<Camera>),
 }
 
 /// A pinhole camera that looks up, and a mirrored sphere above it.
@@ -80,7 +80,7 @@ impl RigOptics {
                 camera::OpticsModel::SphericalMirror(mirror) => {
                     Kind::UnderSphere(UnderSphere::new(camera, mirror))
                 }
-                _ => Kind::Single(camera.clone()),
+                _ => Kind::Single(Box::new(camera.clone())),
             },
             errors: *errors,
         }

@@ -99,7 +99,7 @@ const TEXTS: [(&str, i32, &str); 9] = [
 ];
 
 /// The commands, and the exit codes that their help lists: all but `control` and `runs` have targets.
-const PARTS: [&str; 6] = ["vision", "control", "runs", "laser", "mistakes", "lengths"];
+const PARTS: [&str; 7] = ["vision", "control", "runs", "laser", "logs", "mistakes", "lengths"];
 
 /// Runs the program to its end in the repository.
 fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {

@@ -10,7 +10,7 @@ use std::{
 use image::{GrayImage, RgbImage, imageops::grayscale};
 use serde::Serialize;
 use toposlam_vision::camera::{
-    Camera, Mask, OpticsModel, SphericalMirror, calibration, fit_picture,
+    Camera, HiddenFloor, Mask, OpticsModel, Polygon, SphericalMirror, calibration, fit_picture,
     rim::{self, Rim, RimError},
     unchanging,
 };
@@ -34,6 +34,8 @@ Example:
   toposlam camera calibrate view-*.png --out camera.toml \\
     --picture fit.png --mask-out mask.png
   toposlam camera calibrate view.png --rim 611,480,652 --out camera.toml
+  toposlam camera calibrate view.png --hide \"600,300 700,300 700,340 600,340\" \\
+    --out camera.toml --picture fit.png
 
 What the images do not show (the mirror's radius and distance, the camera's height, the direction of ahead, and \
 the side from which the camera sees the mirror) is taken from --initial. Without it, it is that of the SuperScout: \
@@ -65,9 +67,10 @@ pub(super) struct CalibrateArguments {
     /// four images from different places, or --hide
     #[arg(long, value_name = "FILE", requires = "out")]
     mask_out: Option<PathBuf>,
-    /// A polygon that the mask hides, as the robot's body: its corners in pixels, as in "300,400 420,400
-    /// 360,480"; may be repeated
-    #[arg(long, value_name = "POLYGON", value_parser = parse_polygon, requires = "mask_out")]
+    /// A polygon that hides the floor, as a housing of the camera: its corners in pixels, as in "300,400
+    /// 420,400 360,480"; may be repeated. Without --mask-out, the calibration contains it, and one image is
+    /// enough. What is nearer than the hidden_radius of --initial is hidden, too [default: 0.32 m]
+    #[arg(long, value_name = "POLYGON", value_parser = parse_polygon)]
     hide: Vec<Polygon>,
     /// Print one JSON object, and the calibration only to --out
     #[arg(long)]
@@ -110,27 +113,32 @@ impl CalibrateArguments {
             None => rim::find(&grey),
         };
         let rim = rim.map_err(|error| self.no_rim(&error))?;
+        let mirror = with_rim(mirror, &rim);
+        let optics = OpticsModel::SphericalMirror(mirror);
+        let camera = Camera { image: size, optics, mask: None, ..known };
         let mask = match &self.mask_out {
             Some(path) => {
                 let name = self.mask_name(path);
                 // What never changes is not seen in few images, but may be drawn.
                 let is_drawn = !self.hide.is_empty() && images.len() < unchanging::FEWEST;
                 let mut mask = if is_drawn {
-                    Mask::circle(&name, size, rim.centre, rim.radius)
+                    let mut mask = Mask::circle(&name, size, rim.centre, rim.radius);
+                    let ground = |pixel| camera.pixel_to_ground(pixel);
+                    mask.hide(|pixel| ground(pixel).is_some_and(|at| camera.is_below_body(at)));
+                    mask
                 } else {
                     unchanging::mask(&name, &images, &rim)
                         .map_err(|error| CliError::at("--mask-out", error))?
                 };
-                for Polygon(corners) in &self.hide {
-                    mask.hide(corners);
-                }
+                mask.hide(|pixel| self.hide.iter().any(|polygon| polygon.contains(pixel)));
                 Some(mask)
             }
             None => None,
         };
-        let mirror = with_rim(mirror, &rim);
-        let optics = OpticsModel::SphericalMirror(mirror);
-        let camera = Camera { image: size, optics, mask: None, ..known };
+        // A mask contains what the polygons hide.
+        let polygons = if mask.is_none() { self.hide.clone() } else { Vec::new() };
+        let hidden = HiddenFloor { polygons, ..camera.hidden };
+        let camera = Camera { hidden, ..camera };
         checked(&camera)?;
         let camera = Camera { mask, ..camera };
         let text = calibration::to_toml(&camera);
@@ -176,8 +184,10 @@ impl CalibrateArguments {
             let cause = "camera.kind: only a spherical mirror is calibrated by its rim";
             return Err(CliError::in_file(path, cause));
         };
+        // Its polygons are those of other images.
+        let hidden = HiddenFloor { radius: initial.hidden.radius, ..HiddenFloor::default() };
         let Camera { ahead, seen_from, .. } = initial;
-        Ok((Camera { ahead, seen_from, ..Camera::superscout() }, mirror))
+        Ok((Camera { ahead, seen_from, hidden, ..Camera::superscout() }, mirror))
     }
 
     /// Reads the images. All must have the size of the first.
@@ -286,10 +296,6 @@ fn parse_rim(text: &str) -> Result<[f64; 3], String> {
     rim.ok_or_else(|| "write three numbers of pixels: U,V,R, as in 611,480,652".to_owned())
 }
 
-/// The corners of a polygon, in pixels.
-#[derive(Clone)]
-struct Polygon(Vec<[f64; 2]>);
-
 fn parse_polygon(text: &str) -> Result<Polygon, String> {
     let corner = |word: &str| {
         let (u, v) = word.split_once(',')?;
@@ -297,8 +303,8 @@ fn parse_polygon(text: &str) -> Result<Polygon, String> {
         Some([u?, v?])
     };
     let corners: Option<Vec<_>> = text.split_whitespace().map(corner).collect();
-    let corners = corners.filter(|corners| corners.len() >= 3).map(Polygon);
     corners
+        .and_then(Polygon::from_corners)
         .ok_or_else(|| "write at least three corners, as in \"300,400 420,400 360,480\"".to_owned())
 }
 

@@ -14,12 +14,14 @@ const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
 
 /// An image with a calibration drawn over it: the centre and ahead in white, the rim and the horizon in
 /// green, the points of the rim in yellow, the floor at one, two and three metres in blue. What the
-/// camera's mask hides is reddish.
+/// camera's mask and polygons hide is reddish.
 pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
     let mut picture = image.clone();
-    if let Some(mask) = &camera.mask {
-        let hidden = picture.enumerate_pixels_mut().filter(|(u, v, _)| !mask.sees([*u, *v]));
-        for (_, _, pixel) in hidden {
+    for (u, v, pixel) in picture.enumerate_pixels_mut() {
+        let place = Point2::new(u, v).map(f64::from);
+        let is_hidden = camera.mask.as_ref().is_some_and(|mask| !mask.sees([u, v]))
+            || camera.hidden.polygons.iter().any(|polygon| polygon.contains(place));
+        if is_hidden {
             let [red, green, blue] = pixel.0;
             pixel.0 = [red / 2 + 100, green / 2, blue / 2];
         }

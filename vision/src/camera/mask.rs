@@ -61,17 +61,12 @@ impl Mask {
         Self::new(file, size, inside.collect())
     }
 
-    /// Hides the pixels whose centres are inside of a polygon, which may have holes where it crosses itself.
-    pub fn hide(&mut self, corners: &[[f64; 2]]) {
+    /// Hides the pixels whose centres are where `hides` is true.
+    pub fn hide(&mut self, hides: impl Fn(Point2<f64>) -> bool) {
         let width = self.size[0] as usize;
         for (at, seen) in self.seen.iter_mut().enumerate() {
-            let [u, v] = [at % width, at / width].map(|along| along as f64);
-            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-            let crossed = sides.filter(|([from_u, from_v], [to_u, to_v])| {
-                let crosses_row = (*from_v > v) != (*to_v > v);
-                crosses_row && u < from_u + (v - from_v) / (to_v - from_v) * (to_u - from_u)
-            });
-            *seen &= crossed.count() % 2 == 0;
+            let pixel = Point2::new(at % width, at / width).map(|along| along as f64);
+            *seen = *seen && !hides(pixel);
         }
     }
 

@@ -6,6 +6,7 @@
 
 pub mod calibration;
 mod fit_picture;
+mod hidden;
 mod kannala_brandt;
 mod mask;
 mod mei;
@@ -20,9 +21,14 @@ pub mod unchanging;
 mod xml;
 mod yaml;
 
+use std::f64::consts::TAU;
+
 use nalgebra::{Matrix2, Point2, Point3, Vector3};
 
+use crate::geometry::unit;
+
 pub use fit_picture::fit_picture;
+pub use hidden::{HiddenFloor, Polygon};
 pub use kannala_brandt::KannalaBrandt;
 pub use mask::{Mask, MaskError};
 pub use mei::Mei;
@@ -46,6 +52,13 @@ pub enum OpticsModel {
     KannalaBrandt(KannalaBrandt),
 }
 
+/// [`Camera::hidden_radius`] looks at this many bearings ... Geometry: every 3 degrees.
+const HIDDEN_BEARINGS: u32 = 120;
+/// ... and at ranges this far apart, in metres ... Geometry: half a centimetre.
+const HIDDEN_STEP: f64 = 0.005;
+/// ... up to this number of steps. Geometry: 1.5 m.
+const HIDDEN_STEPS: u32 = 300;
+
 /// A place in an image that is scaled by a factor: pixel centres are integers, so an image begins at
 /// -0.5.
 fn scaled_place(place: Point2<f64>, factor: f64) -> Point2<f64> {
@@ -62,6 +75,7 @@ pub struct Camera {
     pub optics: OpticsModel,
     /// The pixels in which the floor can be seen, if they are known.
     pub mask: Option<Mask>,
+    pub hidden: HiddenFloor,
 }
 
 /// The ray along which a pixel looks, in floor coordinates and metres.
@@ -103,10 +117,6 @@ impl OpticsModel {
 }
 
 impl Camera {
-    /// Without a mask, floor nearer than this to the robot's centre counts as unseen, because the body
-    /// hides it. In metres.
-    pub const HIDDEN: f64 = 0.32;
-
     /// The SuperScout's camera: a spherical mirror seen from below, 1280 by 960 pixels.
     pub fn superscout() -> Self {
         Self {
@@ -121,6 +131,7 @@ impl Camera {
                 camera_height: 0.90,
             }),
             mask: None,
+            hidden: HiddenFloor::default(),
         }
     }
 
@@ -140,7 +151,8 @@ impl Camera {
             }
         };
         let mask = self.mask.as_ref().map(|mask| mask.sized(image));
-        Self { image, optics, mask, ..*self }
+        let hidden = self.hidden.scaled(factor);
+        Self { image, optics, mask, hidden, ..*self }
     }
 
     /// The pixel that looks straight down.
@@ -208,11 +220,37 @@ impl Camera {
     /// Whether the floor can be seen in a pixel: neither body, strut nor rim is in the way.
     pub fn sees(&self, pixel: [u32; 2]) -> bool {
         let inside = pixel[0] < self.image[0] && pixel[1] < self.image[1];
+        let place = Point2::from(pixel.map(f64::from));
         inside
             && self.mask.as_ref().is_none_or(|mask| mask.sees(pixel))
+            && !self.hidden.polygons.iter().any(|polygon| polygon.contains(place))
             && self
-                .pixel_to_ground(pixel.map(f64::from))
-                .is_some_and(|at| self.mask.is_some() || at.coords.norm() >= Self::HIDDEN)
+                .pixel_to_ground(place)
+                .is_some_and(|ground| self.mask.is_some() || !self.is_below_body(ground))
+    }
+
+    /// Whether a point of the floor is so near that the robot's body hides it.
+    pub fn is_below_body(&self, ground: Point2<f64>) -> bool {
+        ground.coords.norm() < self.hidden.radius
+    }
+
+    /// The radius around the robot's centre, in metres, from which on most of the floor is seen: what is nearer is hidden by
+    /// the body, or by what carries the camera.
+    pub fn hidden_radius(&self) -> f64 {
+        let is_seen = |range: f64| {
+            let bearings =
+                (0..HIDDEN_BEARINGS).map(|nth| TAU * f64::from(nth) / f64::from(HIDDEN_BEARINGS));
+            let seen = bearings
+                .filter(|&bearing| self.seen_pixel(Point2::from(range * unit(bearing))).is_some());
+            2 * seen.count() >= HIDDEN_BEARINGS as usize
+        };
+        let HiddenFloor { radius, polygons } = &self.hidden;
+        let by_body = if self.mask.is_none() { *radius } else { 0.0 };
+        if self.mask.is_none() && polygons.is_empty() {
+            return by_body;
+        }
+        let mut ranges = (0..=HIDDEN_STEPS).map(|step| by_body + f64::from(step) * HIDDEN_STEP);
+        ranges.find(|&range| is_seen(range)).unwrap_or(*radius)
     }
 
     /// From the image's axes, right and top, to the robot's, ahead and left: a turn, or a turn and a reflection. Its

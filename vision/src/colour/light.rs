@@ -7,9 +7,9 @@ use thiserror::Error;
 use super::Gain;
 use crate::{camera::Camera, geometry::unit};
 
-/// The inner and the outer radius of the ring of samples, in metres. Geometry: the body hides what is nearer; farther
-/// away there may be walls.
-const RING: [f64; 2] = [0.34, 0.50];
+/// The inner and the outer radius of the ring of samples beyond what the body hides, in metres. Geometry: farther away
+/// there may be walls.
+const RING: [f64; 2] = [0.02, 0.18];
 /// The number of bearings with samples. Geometry: every 1.5 degrees.
 const BEARINGS: u32 = 240;
 /// The number of samples on each bearing. Geometry: every 1.5 cm.
@@ -36,8 +36,10 @@ pub struct FloorRing {
 
 impl FloorRing {
     pub fn new(camera: &Camera) -> Self {
+        let hidden = camera.hidden_radius();
         let samples = (0..RANGES).flat_map(|nth| {
-            let range = RING[0] + (RING[1] - RING[0]) * f64::from(nth) / f64::from(RANGES - 1);
+            let range =
+                hidden + RING[0] + (RING[1] - RING[0]) * f64::from(nth) / f64::from(RANGES - 1);
             (0..BEARINGS).map(move |nth| {
                 let bearing = std::f64::consts::TAU * f64::from(nth) / f64::from(BEARINGS);
                 Point2::from(range * unit(bearing))

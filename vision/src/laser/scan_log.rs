@@ -80,10 +80,10 @@ const SQUARE: f64 = 8.0;
 /// Another pass agrees with a local map if at least this part of the hits of its scans, where the map is known, lies near
 /// walls. Logs: people and doors that were opened are the rest.
 const AGREES: f64 = 0.85;
-/// It is left where odometry lays it if so many lie there. Logs.
-const AGREES_WELL: f64 = 0.95;
 /// The same where odometry drifts, and passes lie elsewhere. Logs.
 const AGREES_IN_DRIFT: f64 = 0.9;
+/// A pass of which so many hits do is left where odometry lays it. Logs.
+const AGREES_WELL: f64 = 0.95;
 /// The scans of another pass are this far apart at least, in metres. Geometry: half of a corridor.
 const APART: f64 = 0.9;
 /// The number of other passes that a map may have: the nearest ones along the way.

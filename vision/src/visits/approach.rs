@@ -1,6 +1,6 @@
 //! Visits of a robot with a camera: approaches to a junction, one after the other.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 use nalgebra::Point2;
 use toposlam_model::driving::{
@@ -12,7 +12,7 @@ use toposlam_model::driving::{
 use super::visit::{UndecidedCause, Visit, VisitExit, VisitLog};
 use crate::{
     geometry::{distance, unit},
-    place::{PlaceArm, PlaceView, SeenPlace, nearest_direction},
+    place::{Certainty, PlaceArm, PlaceView, SeenPlace, nearest_direction},
 };
 
 /// A junction is visited if its turning point comes this near, in metres.
@@ -37,6 +37,8 @@ pub(super) struct ApproachRule<S> {
 #[derive(Clone, Debug)]
 struct Approach<S> {
     first: S,
+    /// Whether there is a junction: some scene shows it for certain.
+    is_certain: bool,
     estimate: JunctionEstimate,
     /// The direction of the entry door in the frame of odometry.
     entry: f64,
@@ -62,11 +64,14 @@ impl<S: Copy + Default> ApproachRule<S> {
         for way in [&mut self.way].into_iter().chain(onwards) {
             way.add(view.robot);
         }
-        match (&scene.place, &view.places[..]) {
+        match (&scene.place, &view.possible_places[..]) {
             (Place::Hallway(_), _) => self.in_hallway(log, at, scene, &view.robot),
             (Place::Junction(junction), [place]) => {
-                let is_other =
-                    |it: &mut Approach<S>| distance(it.turning_point, place.centre) > ANOTHER;
+                // At a junction, furniture that looks like another one shows nothing.
+                let is_other = |it: &mut Approach<S>| {
+                    distance(it.turning_point, place.centre) > ANOTHER
+                        && (junction.is_certain() || !it.is_certain)
+                };
                 if let Some(approach) = self.approach.take_if(is_other) {
                     self.leave(log, at, &approach, view.robot.heading);
                     self.hallway = Some(view.robot.heading);
@@ -80,7 +85,11 @@ impl<S: Copy + Default> ApproachRule<S> {
 
     pub(super) fn status(&self) -> Option<SeenPlace> {
         let approach = self.approach.as_ref().filter(|approach| approach.is_visit())?;
-        let arms = approach.estimate.shape().map_or_else(Vec::new, |shape| approach.arms(shape));
+        let arms = match approach.estimate.shape() {
+            Some(shape) => approach.arms(shape),
+            None if approach.is_certain => Vec::new(),
+            None => approach.possible_arms(None),
+        };
         Some(SeenPlace { centre: approach.turning_point, clearance: 0.0, arms })
     }
 
@@ -117,8 +126,10 @@ impl<S: Copy + Default> ApproachRule<S> {
             self.visited(log, approach, Some((at, heading)));
         } else if wrapped(heading - approach.entry).abs() < FRAC_PI_2 {
             log.turned_back.push(at);
-        } else {
+        } else if approach.is_certain {
             log.push(approach.undecided(approach.first), |_| None);
+        } else {
+            log.push(approach.possible(Some((at, heading))), |_| None);
         }
     }
 
@@ -132,17 +143,26 @@ impl<S: Copy + Default> ApproachRule<S> {
     ) {
         let driven = self.way.length();
         let seen = &mut self.seen;
+        let is_certain = junction.is_certain();
         let approach = self.approach.get_or_insert_with(|| Approach {
             first: at,
+            is_certain,
             estimate: std::mem::take(seen),
-            entry: place.arms.first().map_or(0.0, |entry| entry.direction),
+            entry: entry_door(place, is_certain, robot),
             turning_point: place.centre,
             nearest: f64::INFINITY,
             visited: at,
             driven,
             onwards: WayLength::default(),
         });
-        let off = distance(place.centre, robot.position);
+        if is_certain && !approach.is_certain {
+            let entry = entry_door(place, is_certain, robot);
+            let (turning_point, nearest) = (place.centre, f64::INFINITY);
+            *approach = Approach { is_certain, entry, turning_point, nearest, ..approach.clone() };
+        }
+        let centre =
+            if approach.is_certain && !is_certain { approach.turning_point } else { place.centre };
+        let off = distance(centre, robot.position);
         if off < approach.nearest {
             (approach.nearest, approach.visited, approach.driven) = (off, at, driven);
             approach.onwards = WayLength::default();
@@ -157,7 +177,8 @@ impl<S: Copy + Default> ApproachRule<S> {
         let undecided = approach.undecided(approach.visited);
         let Approach { estimate, driven, onwards, .. } = approach;
         let (Some(shape), Some(percept)) = (estimate.shape(), estimate.percept()) else {
-            log.push(undecided, |_| None);
+            let visit = if approach.is_certain { undecided } else { approach.possible(exit) };
+            log.push(visit, |_| None);
             return;
         };
         let arms = approach.arms(shape);
@@ -193,6 +214,38 @@ impl<S: Copy + Default> Approach<S> {
         shape.quarters().into_iter().map(|quarter| PlaceArm::certain(arm(quarter))).collect()
     }
 
+    /// The arms of what may be a junction, clockwise from the entry door: that the robot came in and left is certain.
+    fn possible_arms(&self, exit: Option<f64>) -> Vec<PlaceArm> {
+        let driven = exit.map(|direction| self.quarter(direction));
+        let arm = |quarter: u32| PlaceArm {
+            direction: wrapped(self.entry - f64::from(quarter) * FRAC_PI_2),
+            certainty: match quarter {
+                0 => Certainty::Certain,
+                _ if driven == Some(quarter) => Certainty::Certain,
+                _ => Certainty::Possible,
+            },
+        };
+        (0..4).map(arm).collect()
+    }
+
+    /// The quarter turns clockwise from the entry door to a direction.
+    fn quarter(&self, direction: f64) -> u32 {
+        let quarters = wrapped(self.entry - direction).rem_euclid(TAU) / FRAC_PI_2;
+        quarters.round() as u32 % 4
+    }
+
+    /// A visit of what may be a junction, or a hallway.
+    fn possible(&self, exit: Option<(S, f64)>) -> Visit<S> {
+        let direction = exit.map(|(_, direction)| direction);
+        Visit {
+            arms: self.possible_arms(direction),
+            least_bend: Some(FRAC_PI_4),
+            exit: exit.map(|(at, direction)| VisitExit { at, direction, off: None }),
+            goes_back: direction.is_some_and(|direction| self.quarter(direction) == 0),
+            ..self.undecided(self.visited)
+        }
+    }
+
     /// A visit of which nothing is known.
     fn undecided(&self, at: S) -> Visit<S> {
         Visit {
@@ -206,14 +259,22 @@ impl<S: Copy + Default> Approach<S> {
     }
 }
 
+/// The direction of the door by which a robot comes in. Of what is only possible it is the one of four directions that is
+/// behind the robot: there may be no door where there seems to be one.
+fn entry_door(place: &SeenPlace, is_certain: bool, robot: &Odometry) -> f64 {
+    let Some(first) = place.arms.first().map(|arm| arm.direction) else { return 0.0 };
+    let quarters =
+        if is_certain { 0.0 } else { (wrapped(robot.heading + PI - first) / FRAC_PI_2).round() };
+    wrapped(first + quarters * FRAC_PI_2)
+}
+
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{FRAC_PI_4, PI};
 
     use toposlam_model::driving::scene::{CentreLine, HallwayStatus, HallwayView, Reason};
 
     use super::*;
-    use crate::visits::Visits;
+    use crate::visits::{VisitPercept, Visits};
 
     type Seen = (Place, [f64; 2], f64);
 
@@ -295,6 +356,67 @@ mod tests {
         let once = [(junction(0.2), [-0.2, 0.0], 0.0), hallway([0.0, 1.0], FRAC_PI_2)];
         assert_eq!(events(&once, false), (vec![None], vec![]));
         assert_eq!(visits(&once, false).visits[0].alternatives(), [], "anything is possible");
+    }
+
+    /// The same place, if it is only possible.
+    fn possible((place, position, heading): Seen) -> Seen {
+        let Place::Junction(view) = place else { return (place, position, heading) };
+        let view = JunctionView { confidence: 0.5, ..view };
+        (Place::Junction(view), position, heading)
+    }
+
+    #[test]
+    fn what_is_only_possibly_a_junction_is_a_visit_with_no_junction_among_its_alternatives() {
+        let onwards = hallway([0.7, 0.0], 0.0);
+        let aside = hallway([0.0, 0.7], FRAC_PI_2);
+        let back = hallway([-0.7, 0.0], PI);
+        let percept = |degree, door| Some(VisitPercept { degree, door: Some(door) });
+        let seen = |away: &[Seen]| {
+            let come = visit().into_iter().map(possible).collect();
+            let log = visits(&[come, away.to_vec()].concat(), false);
+            assert_eq!((log.visits.len(), &log.turned_back[..]), (1, &[][..]));
+            log.visits[0].alternatives()
+        };
+        let (straight, left) =
+            ([percept(3, 1), percept(3, 2), percept(4, 2)], [percept(2, 1), percept(3, 1)]);
+        assert_eq!(seen(&[onwards]), [&[None], &straight[..]].concat());
+        // A hallway does not bend.
+        assert_eq!(seen(&[aside]), [&left[..], &[percept(4, 1)]].concat()[..]);
+        let dead_end_or_more = [1, 2, 3, 4].map(|degree| percept(degree, 0));
+        assert_eq!(seen(&[back]), [&[None], &dead_end_or_more[..]].concat());
+        // The log ends there.
+        assert!(seen(&[]).contains(&None));
+    }
+
+    #[test]
+    fn what_is_passed_and_only_possibly_a_junction_is_a_visit_and_what_is_turned_away_from_is_none()
+    {
+        let before = possible((junction(0.8), [-0.8, 0.0], 0.0));
+        let passed = [before.clone(), hallway([0.7, 0.0], 0.0)];
+        let log = visits(&passed, false);
+        assert!(log.visits[0].alternatives().contains(&None), "{log:?}");
+        let turned = [before, hallway([-0.9, 0.0], PI)];
+        assert_eq!(events(&turned, false), (vec![], vec![1]));
+    }
+
+    #[test]
+    fn furniture_beside_a_junction_does_not_change_its_visit() {
+        // A false dead end before it, at it and behind it.
+        let false_end = |ahead: f64, x: f64| {
+            let through = [ahead, 0.0];
+            let doors = vec![CentreLine { through, direction: -FRAC_PI_2 }];
+            let view = JunctionView { doors, turning_point: through, confidence: 0.5 };
+            (Place::Junction(view), [x, 0.0], 0.0)
+        };
+        let away = hallway([0.0, 1.0], FRAC_PI_2);
+        let mut places = [visit(), vec![away]].concat();
+        places.insert(4, false_end(1.8, -0.1));
+        places.insert(2, false_end(0.1, -0.6));
+        places.insert(1, false_end(0.5, -1.0));
+        let seen = visits(&places, false).visits;
+        assert_eq!(seen.len(), 1, "{seen:?}");
+        assert_eq!(seen[0].alternatives(), [Some(seen[0].percept())]);
+        assert_eq!(events(&places, false), (vec![Some(1)], vec![]));
     }
 
     #[test]

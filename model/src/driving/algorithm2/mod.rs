@@ -10,7 +10,7 @@ mod lost;
 use std::f64::consts::{FRAC_PI_4, PI};
 
 pub use dead_reckoning::{CREEP, IDLE, LEG, STALLS, UNKNOWNS};
-pub use lost::{Lost, LostReason};
+pub use lost::{FrameKind, Lost, LostReason};
 
 use super::{
     odometry::Odometry,
@@ -289,15 +289,18 @@ impl<'a> PathExecution<'a> {
     }
 
     /// A junction, seen from its entry door. Once its shape is known, an image of another shape, or of
-    /// the same one turned against odometry, is ignored.
+    /// the same one turned against odometry, is ignored. One that is only possible shows no shape that is not known.
     fn junction(&mut self, scene: &Scene, junction: &JunctionView) -> Seen {
         let Some(entry) = self.reckoning.entry(junction) else { return Seen::Unknown };
         let junction = junction.clone().entered_from(entry);
         let shape = JunctionShape::from_view(&junction);
-        let decided = self.reckoning.is_at_junction().then(|| self.junction_state()).flatten();
-        match decided {
+        let decided = self.junction_state();
+        let is_new =
+            !junction.is_certain() && decided.is_none_or(|state| shape != Some(state.shape));
+        match decided.filter(|_| self.reckoning.is_at_junction()) {
             Some(state) if shape != Some(state.shape) => return Seen::Unknown,
             Some(_) => {}
+            None if is_new => return Seen::Unknown,
             None => self.visit.add_scene(&Scene {
                 place: Place::Junction(junction.clone()),
                 marker: scene.marker,

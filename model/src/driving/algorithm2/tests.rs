@@ -218,6 +218,21 @@ fn before_the_turning_point_it_goes_towards_the_crossing_by_at_most_half_a_unit(
     }
 }
 
+#[test]
+fn a_junction_that_is_only_possible_counts_once_it_is_decided() {
+    let possible = |distance| {
+        let view = JunctionView { confidence: 0.5, ..view(L_LEFT, distance, 0.0) };
+        scene(Place::Junction(view))
+    };
+    // Furniture in a hallway: the robot goes on slowly, as if it saw nothing, and gives up in the end.
+    let mut robot = Robot::in_hallway(NEXT);
+    robot.goes(&possible(0.6), 0.0, UNIT / 3.0, Hallway);
+    let (_, why) = robot.drives_on(1.0, &possible(0.0));
+    assert!(matches!(why, LostReason::Unknown { .. }), "{why}");
+    let state = Robot::come_to(L_LEFT, NEXT).arrives(&possible(0.0));
+    assert_eq!(Some(state.shape), JunctionShape::from_view(&view(L_LEFT, 0.0, 0.0)));
+}
+
 // paper: alg2.20, alg2.21, alg2.22
 #[test]
 fn at_the_turning_point_with_no_door_left_the_path_is_done() {

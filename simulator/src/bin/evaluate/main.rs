@@ -5,6 +5,7 @@ mod failed_runs;
 mod failing;
 mod laser;
 mod lengths;
+mod logs;
 mod mistakes;
 mod report;
 mod robots;
@@ -30,6 +31,7 @@ Examples:
   evaluate control              every door of every junction
   evaluate runs                 mapping of whole buildings
   evaluate laser                junctions by a laser scanner
+  evaluate logs                 the logs of whole runs, judged
   evaluate mistakes --audit     what one mistake does
   evaluate lengths              false alarms of measured hallways",
     &[
@@ -52,6 +54,7 @@ enum What {
     Control(control::EvaluateControlArguments),
     Runs(runs::EvaluateRunsArguments),
     Laser(laser::EvaluateLaserArguments),
+    Logs(logs::EvaluateLogsArguments),
     Mistakes(mistakes::EvaluateMistakesArguments),
     Lengths(lengths::EvaluateLengthsArguments),
 }
@@ -65,6 +68,7 @@ fn main() -> ExitCode {
         What::Control(control) => control.run(&mut out),
         What::Runs(runs) => runs.run(&mut out),
         What::Laser(laser) => laser.run(&mut out),
+        What::Logs(logs) => logs.run(&mut out),
         What::Mistakes(mistakes) => mistakes.run(&mut out),
         What::Lengths(lengths) => lengths.run(&mut out),
     };

@@ -2,6 +2,7 @@
 
 mod corridor_pilot;
 pub mod corridor_world;
+pub mod judged_log;
 pub mod judged_walk;
 pub mod laser_report;
 mod laser_robot;

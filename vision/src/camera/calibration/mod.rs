@@ -13,6 +13,8 @@
 //! ahead = 90.0                 # degrees in the image, counter-clockwise from u
 //! seen_from = "below"
 //! mask = "mask.png"            # optional: white where the floor can be seen
+//! hidden_radius = 0.32         # optional, metres: without a mask, the body hides the floor nearer than this
+//! hide = [[[300, 400], [420, 400], [360, 480]]]  # optional: polygons that hide the floor, in pixels
 //! ```
 //!
 //! For a camera that OCamCalib, OpenCV's omnidir, camodocal or Kalibr has calibrated, the calibration
@@ -78,4 +80,6 @@ pub enum CalibrationErrorKind {
     NoImage,
     #[error("{file}: {error}")]
     Mask { file: String, error: MaskError },
+    #[error("a polygon has at least {least} corners, this one has {0}", least = crate::camera::Polygon::FEWEST)]
+    FewCorners(usize),
 }

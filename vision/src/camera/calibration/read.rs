@@ -9,13 +9,14 @@ use toposlam_model::format::document::{
 
 use super::{CalibrationError, CalibrationErrorKind, SIDES};
 use crate::camera::{
-    Camera, KannalaBrandt, Mask, Mei, OCam, OpticsFileError, OpticsModel, SeenFrom, SphericalMirror,
+    Camera, HiddenFloor, KannalaBrandt, Mask, Mei, OCam, OpticsFileError, OpticsModel, Polygon,
+    SeenFrom, SphericalMirror,
 };
 
 /// Reads the files that a calibration names, by their names in it.
 pub type Files<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
 
-const COMMON: [&str; 5] = ["kind", "image", "ahead", "seen_from", "mask"];
+const COMMON: [&str; 7] = ["kind", "image", "ahead", "seen_from", "mask", "hidden_radius", "hide"];
 
 const FOCAL: RangeInclusive<f64> = 1.0..=1e6;
 const MIRROR_RADIUS: RangeInclusive<f64> = 1e-3..=1.0;
@@ -23,6 +24,9 @@ const HEIGHT: RangeInclusive<f64> = 0.01..=10.0;
 const RIM: RangeInclusive<f64> = 1.0..=1e6;
 const ANGLE: RangeInclusive<f64> = -360.0..=360.0;
 const TILT: RangeInclusive<f64> = 0.0..=135.0;
+const HIDDEN_RADIUS: RangeInclusive<f64> = 0.0..=1.5;
+/// Corners of polygons lie at most this far from an image, in pixels.
+const CORNER: RangeInclusive<f64> = -1e5..=1e5;
 
 #[derive(Clone, Copy)]
 enum Kind {
@@ -74,7 +78,31 @@ pub fn read(bytes: &[u8], files: &mut Files<'_>) -> Result<Camera, CalibrationEr
     let seen_from =
         table.need("seen_from")?.word(&[("below", SeenFrom::Below), ("above", SeenFrom::Above)])?;
     let mask = table.get("mask").map(|mask| read_mask(mask, files, image)).transpose()?;
-    Ok(Camera { image, ahead, seen_from, optics, mask })
+    let hidden = hidden_floor(&table)?;
+    Ok(Camera { image, ahead, seen_from, optics, mask, hidden })
+}
+
+fn hidden_floor(table: &DocumentTable<'_>) -> Result<HiddenFloor, CalibrationError> {
+    let radius = match table.get("hidden_radius") {
+        Some(value) => value.number_in("a radius in metres", HIDDEN_RADIUS)?,
+        None => HiddenFloor::default().radius,
+    };
+    let polygons = match table.get("hide") {
+        Some(value) => value.list("a list of polygons")?.map(polygon).collect::<Result<_, _>>()?,
+        None => Vec::new(),
+    };
+    Ok(HiddenFloor { radius, polygons })
+}
+
+fn polygon(value: DocumentValue<'_>) -> Result<Polygon, CalibrationError> {
+    let corner = |value: DocumentValue<'_>| {
+        let [u, v] = value.array("a corner of two numbers")?;
+        let [u, v] = [u, v].map(|at| at.number_in("a corner in pixels", CORNER));
+        Ok::<_, CalibrationError>([u?, v?])
+    };
+    let corners = value.list("a list of corners")?.map(corner).collect::<Result<Vec<_>, _>>()?;
+    let few = CalibrationErrorKind::FewCorners(corners.len());
+    Polygon::from_corners(corners).ok_or_else(|| value.position().error(few))
 }
 
 fn ahead(table: &DocumentTable<'_>) -> Result<f64, CalibrationError> {

@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use toml::Value;
 
-use crate::camera::{Camera, KannalaBrandt, Mei, OCam, OpticsModel, SeenFrom};
+use crate::camera::{
+    Camera, HiddenFloor, KannalaBrandt, Mei, OCam, OpticsModel, Polygon, SeenFrom,
+};
 
 pub fn to_toml(camera: &Camera) -> String {
     let mut text = String::from("[camera]\n");
@@ -63,11 +65,25 @@ pub fn to_toml(camera: &Camera) -> String {
     if let Some(mask) = &camera.mask {
         line("mask", quoted(&mask.file), "white where the floor can be seen");
     }
+    let HiddenFloor { radius, polygons } = &camera.hidden;
+    if radius.to_bits() != HiddenFloor::default().radius.to_bits() {
+        line("hidden_radius", number(*radius), "metres; the body hides the floor nearer than this");
+    }
+    if !polygons.is_empty() {
+        line("hide", shown(polygons), "polygons that hide the floor, in pixels");
+    }
     text
 }
 
 fn number(number: f64) -> String {
     Value::from(number).to_string()
+}
+
+fn shown(polygons: &[Polygon]) -> String {
+    let list = |parts: Vec<String>| format!("[{}]", parts.join(", "));
+    let corner = |corner: [f64; 2]| list(corner.map(number).to_vec());
+    let polygon = |polygon: &Polygon| list(polygon.corners().map(corner).collect());
+    list(polygons.iter().map(polygon).collect())
 }
 
 fn quoted(text: &str) -> String {
