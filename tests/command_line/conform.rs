@@ -83,7 +83,7 @@ fn the_shorter_log_contains_the_scenes_before_the_robot_strayed() {
         let mut scene =
             Scene { stamp, place: "hallway".into(), status: "clear".into(), ..Scene::default() };
         if !doors.is_empty() {
-            scene = Scene { stamp, place: "junction".into(), ..Scene::default() };
+            scene = Scene { stamp, place: "junction".into(), confidence: 1.0, ..Scene::default() };
             (scene.doors, scene.turning_point) = (doors.to_vec(), [-x, 0.0]);
         }
         writer.write(Scene::TOPIC, time, &scene).unwrap();

@@ -69,7 +69,7 @@ fn a_hallway_and_a_junction_are_reported_in_the_documented_form() {
         keys,
         [
             "schema kind image scene status reason heading left right confidence marker",
-            "schema kind image scene degree doors centre_lines turning_point confidence marker",
+            "schema kind image scene degree doors centre_lines turning_point confidence certain marker",
         ]
     );
 }

@@ -320,6 +320,7 @@ mod tests {
             ("hallway", "not called hallway", 0.005),
             ("hallway", "called junction", 0.0005),
             ("junction", NOT_RIGHT, 0.01),
+            ("junction", ONLY_POSSIBLE, 0.02),
             ("junction", KIND_OR_ENTRY_WRONG, 0.001),
         ];
         assert_eq!(of_places.collect::<Vec<_>>(), expected);

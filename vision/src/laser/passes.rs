@@ -50,7 +50,7 @@ pub(super) struct OwnPass<'a> {
 }
 
 /// How far another pass agrees with a map.
-pub(super) struct Agreement {
+pub(super) struct PassAgreement {
     /// The part of its hits that lie on walls, where the map is known.
     pub(super) part: f64,
     /// The widest wall that it sees in free space, in metres.
@@ -86,10 +86,10 @@ impl<'a> OwnPass<'a> {
     }
 
     /// How far another pass agrees with the map, by the ends of its rays on the map.
-    pub(super) fn agreement(&self, hits: impl Iterator<Item = Point2<f64>>) -> Agreement {
+    pub(super) fn agreement(&self, hits: impl Iterator<Item = Point2<f64>>) -> PassAgreement {
         let hits: Vec<[i64; 2]> = hits.map(|hit| self.counts.cell_at(hit)).collect();
         let Some(part) = part_near(&self.near_hits, &hits, [0, 0], LEAST_HITS) else {
-            return Agreement { part: 0.0, widest: 0.0, elsewhere: false };
+            return PassAgreement { part: 0.0, widest: 0.0, elsewhere: false };
         };
         let is_astray = |hit: &[i64; 2]| self.near_hits.at(*hit) == Some(false);
         let astray = groups(hits.iter().copied().filter(is_astray).collect());
@@ -97,7 +97,7 @@ impl<'a> OwnPass<'a> {
         let is_known = |hit: &[i64; 2]| self.near_hits.at(*hit).is_some();
         let known = some_of(hits.into_iter().filter(is_known).collect(), HITS);
         let elsewhere = self.fit_elsewhere(&known);
-        Agreement { part, widest: self.counts.cell * widest, elsewhere }
+        PassAgreement { part, widest: self.counts.cell * widest, elsewhere }
     }
 
     /// Whether more of these hits are near walls after a shift. Where most of them leave what is known it is not known how

@@ -18,7 +18,7 @@ use super::{
     local_map::{LocalMap, LocalView, rays},
     matching::{ScanMatcher, WallPoint},
     params::{LaserParams, LocalMapParams},
-    passes::{Agreement, OwnPass},
+    passes::{OwnPass, PassAgreement},
     ray_counts::{RayCounts, Rays},
     scan::Scan,
     scan_choice::{ChosenScan, ScanChoice},
@@ -248,7 +248,7 @@ impl ScanLog {
                     let map_from_robot = from_robot(&on_map(scan));
                     scan.walls.iter().map(move |wall| wall.moved(&map_from_robot))
                 });
-                let placed = |map_from_log: &Isometry2<f64>| -> (Agreement, Vec<PlacedScan>) {
+                let placed = |map_from_log: &Isometry2<f64>| -> (PassAgreement, Vec<PlacedScan>) {
                     let placed: Vec<_> =
                         pass.iter().map(|scan| scan.placed(map_from_log)).collect();
                     let hits = placed.iter().flat_map(|scan| &scan.rays.hits);
@@ -271,7 +271,7 @@ impl ScanLog {
                 placed.iter().map(|scan| (scan.viewpoint.clone(), scan.robot)).unzip();
             LocalView::new(grid, robot, &viewpoints, &driven, &self.params, with_facts)
         };
-        let scans = |passes: Vec<(Agreement, Vec<PlacedScan>)>| {
+        let scans = |passes: Vec<(PassAgreement, Vec<PlacedScan>)>| {
             passes.into_iter().flat_map(|(_, pass)| pass)
         };
         for scan in scans(sure) {

@@ -14,7 +14,7 @@ use toposlam_terminal::{
 use super::report::{MeasurementEnd, ReportArguments, measure, unmeasured};
 use toposlam_simulator::{
     SCANNERS,
-    evaluation::{bound::upper_bound, laser::judged_log::JudgedLog, report::TargetStatus},
+    evaluation::{bound::upper_bound, laser::judged_log::OwnJudgement, report::TargetStatus},
 };
 
 /// Judge the logs of runs by a laser scanner: is a robot accused that did nothing wrong?
@@ -56,9 +56,9 @@ impl EvaluateLogsArguments {
         let Self { runs, first, seed, .. } = self;
         let numbers = first..first.saturating_add(runs);
         let judged = measure("logs", "logs", numbers, |number, watch| {
-            JudgedLog::of_run(seed, number, watch).transpose()
+            OwnJudgement::of_run(seed, number, watch).transpose()
         })?;
-        let judged: Vec<JudgedLog> =
+        let judged: Vec<OwnJudgement> =
             judged.into_iter().collect::<Result<_, _>>().map_err(unmeasured)?;
         writeln!(
             sheet.text,
@@ -85,14 +85,15 @@ impl EvaluateLogsArguments {
         }
         let rows = SCANNERS.iter().map(|scanner| {
             let logs = || judged.iter().filter(|log| log.scanner == scanner.name);
-            let count =
-                |is: &dyn Fn(&JudgedLog) -> bool| logs().filter(|log| is(log)).count().to_string();
-            let conform = |log: &JudgedLog| log.verdicts[0] == Some(ConformVerdict::Conforms);
-            let in_world = |log: &JudgedLog| log.verdicts[1] == Some(ConformVerdict::Conforms);
+            let count = |is: &dyn Fn(&OwnJudgement) -> bool| {
+                logs().filter(|log| is(log)).count().to_string()
+            };
+            let conform = |log: &OwnJudgement| log.verdicts[0] == Some(ConformVerdict::Conforms);
+            let in_world = |log: &OwnJudgement| log.verdicts[1] == Some(ConformVerdict::Conforms);
             [
                 scanner.name.to_owned(),
                 logs().count().to_string(),
-                count(&JudgedLog::diverges),
+                count(&OwnJudgement::diverges),
                 count(&conform),
                 count(&in_world),
                 logs().map(|log| log.visits).sum::<usize>().to_string(),

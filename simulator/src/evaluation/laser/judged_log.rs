@@ -39,7 +39,7 @@ const STEPS: u64 = 100_000;
 
 /// The judgement of a run's own log.
 #[derive(Clone, Copy, Debug)]
-pub struct JudgedLog {
+pub struct OwnJudgement {
     pub number: u64,
     pub scanner: &'static str,
     pub buildings: BuildingKind,
@@ -83,7 +83,7 @@ impl RunObserver for Arrivals<'_> {
     }
 }
 
-impl JudgedLog {
+impl OwnJudgement {
     /// Makes the run with this number among those of a seed, and judges its log; `None` if the watch stops. Scanners and
     /// kinds of buildings are taken in turn.
     ///
