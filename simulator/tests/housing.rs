@@ -31,7 +31,7 @@ fn sector(camera: &Camera, margin: f64) -> Polygon {
     let [first, last] = [BEARINGS[0] - margin, BEARINGS[1] + margin];
     let on_arc = |range: f64, share: f64| {
         let ground = range * unit(first + share * (last - first));
-        camera.ground_to_pixel(Point2::from(ground)).unwrap().into()
+        camera.ground_to_pixel(Point2::from(ground)).unwrap()
     };
     let shares = (0..=20).map(|step| f64::from(step) / 20.0);
     let there = shares.clone().map(|share| on_arc(near, share));

@@ -218,8 +218,8 @@ fn what_a_calibration_hides_is_not_seen_and_the_hidden_radius_follows() {
     };
     let corners = "[[600, 300], [700, 300], [700, 350], [600, 350]]";
     let drawn = camera(&format!("hidden_radius = 0.4\nhide = [{corners}]\n"));
-    let sees = |camera: &Camera, ground: [f64; 2]| camera.seen_pixel(ground.into()).is_some();
-    assert!(!sees(&drawn, [0.39, 0.0]) && sees(&drawn, [0.41, 0.0]));
+    let sees_ahead = |x: f64| drawn.seen_pixel(Point2::new(x, 0.0)).is_some();
+    assert!(!sees_ahead(0.39) && sees_ahead(0.41));
     assert!(!drawn.sees([650, 320]) && drawn.sees([650, 360]) && drawn.sees([590, 320]));
     let half = drawn.sized([640, 480]);
     assert!(!half.sees([325, 160]) && half.sees([325, 181]));
@@ -433,7 +433,7 @@ fn a_mask_hides_a_drawn_polygon_inside_of_the_rim() {
     assert!(mask.sees([13, 5]) && !mask.sees([14, 5]) && !mask.sees([9, 0]));
     // An arrow's head: its notch is seen.
     let corners = [[5.5, 2.5], [12.5, 2.5], [9.0, 4.8], [12.5, 7.5], [5.5, 7.5]];
-    let polygon = Polygon::from_corners(corners.to_vec()).unwrap();
+    let polygon = Polygon::from_corners(corners.map(Point2::from).to_vec()).unwrap();
     mask.hide(|pixel| polygon.contains(pixel));
     assert!(!mask.sees([6, 5]) && !mask.sees([11, 3]) && mask.sees([11, 5]) && mask.sees([9, 8]));
 }

@@ -300,7 +300,7 @@ fn parse_polygon(text: &str) -> Result<Polygon, String> {
     let corner = |word: &str| {
         let (u, v) = word.split_once(',')?;
         let [u, v] = [u, v].map(|part| part.parse().ok().filter(|at: &f64| at.is_finite()));
-        Some([u?, v?])
+        Some([u?, v?].into())
     };
     let corners: Option<Vec<_>> = text.split_whitespace().map(corner).collect();
     corners

@@ -36,13 +36,12 @@ impl Polygon {
     pub const FEWEST: usize = 3;
 
     /// The polygon with these corners; `None` if they are too few.
-    pub fn from_corners(corners: Vec<[f64; 2]>) -> Option<Self> {
-        (corners.len() >= Self::FEWEST)
-            .then(|| Self(corners.into_iter().map(Point2::from).collect()))
+    pub fn from_corners(corners: Vec<Point2<f64>>) -> Option<Self> {
+        (corners.len() >= Self::FEWEST).then_some(Self(corners))
     }
 
-    pub fn corners(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
-        self.0.iter().map(|&corner| corner.into())
+    pub fn corners(&self) -> &[Point2<f64>] {
+        &self.0
     }
 
     pub fn contains(&self, pixel: Point2<f64>) -> bool {
@@ -64,6 +63,7 @@ mod tests {
     #[test]
     fn a_polygon_contains_what_is_within_its_corners_at_any_size() {
         let corners = [[100.0, 100.0], [200.0, 100.0], [200.0, 150.0], [100.0, 150.0]];
+        let corners = corners.map(Point2::from);
         let polygon = Polygon::from_corners(corners.to_vec()).unwrap();
         assert_eq!(Polygon::from_corners(corners[..2].to_vec()), None);
         let hidden = HiddenFloor { polygons: vec![polygon], ..HiddenFloor::default() };

@@ -27,17 +27,18 @@ const DEVIATION: [f64; 2] = [0.3, 0.05];
 const POINTS: usize = 200;
 /// ... so many of its hits are looked for elsewhere.
 const HITS: usize = 1000;
-/// A pass is looked for up to this far along the walls of the map and across, in metres. Geometry: in buildings with rooms of
-/// this width all looks alike there.
+/// A pass is looked for up to this far along the walls of the map and across, in metres. Geometry: farther away, rooms of the
+/// same width look alike.
 const FARTHEST: f64 = 4.0;
 /// The nearest place at which it is looked for, in cells. Geometry: nearer ones are the same place.
 const NEAREST: i64 = 6;
 /// It lies elsewhere if this much more of its hits are near walls there, ... Logs.
 const MORE: f64 = 0.02;
-/// ... or this much more, if of those that are not ... Geometry: along a corridor most hits are near its walls anywhere.
+/// ... or this much more, if of the hits that are near none here at most ... Geometry: along a corridor most hits are near its
+/// walls wherever it lies.
 const LITTLE_MORE: f64 = 0.004;
-/// ... only this part is left there. Geometry: a third.
-const MOST_LEFT: f64 = 0.33;
+/// ... this part are near none there either. Geometry: a third.
+const STILL_ASTRAY: f64 = 0.33;
 
 /// What a local map shows of its own pass.
 pub(super) struct OwnPass<'a> {
@@ -111,8 +112,8 @@ impl<'a> OwnPass<'a> {
             .flat_map(|cells| [[cells, 0], [-cells, 0], [0, cells], [0, -cells]])
             .filter_map(part)
             .any(|there| {
-                let most = 1.0 - there <= MOST_LEFT * (1.0 - here);
-                there > here + if most { LITTLE_MORE } else { MORE }
+                let explains_most = 1.0 - there <= STILL_ASTRAY * (1.0 - here);
+                there > here + if explains_most { LITTLE_MORE } else { MORE }
             })
     }
 }

@@ -98,7 +98,7 @@ fn polygon(value: DocumentValue<'_>) -> Result<Polygon, CalibrationError> {
     let corner = |value: DocumentValue<'_>| {
         let [u, v] = value.array("a corner of two numbers")?;
         let [u, v] = [u, v].map(|at| at.number_in("a corner in pixels", CORNER));
-        Ok::<_, CalibrationError>([u?, v?])
+        Ok::<_, CalibrationError>(Point2::new(u?, v?))
     };
     let corners = value.list("a list of corners")?.map(corner).collect::<Result<Vec<_>, _>>()?;
     let few = CalibrationErrorKind::FewCorners(corners.len());

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use nalgebra::Point2;
 use toml::Value;
 
 use crate::camera::{
@@ -81,8 +82,8 @@ fn number(number: f64) -> String {
 
 fn shown(polygons: &[Polygon]) -> String {
     let list = |parts: Vec<String>| format!("[{}]", parts.join(", "));
-    let corner = |corner: [f64; 2]| list(corner.map(number).to_vec());
-    let polygon = |polygon: &Polygon| list(polygon.corners().map(corner).collect());
+    let corner = |corner: &Point2<f64>| list([corner.x, corner.y].map(number).to_vec());
+    let polygon = |polygon: &Polygon| list(polygon.corners().iter().map(corner).collect());
     list(polygons.iter().map(polygon).collect())
 }
 
