@@ -425,18 +425,21 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_cable_on_the_floor_of_an_opening_is_no_wall() {
-        let t = [true, true, true, false];
-        let mut view = DrawnPlace::junction(t, HALF).seen_from([0.0, 0.0], 0.0);
+    /// A view of a place with a cable on its floor, where `on_cable` says.
+    fn with_cable(doors: [bool; 4], on_cable: impl Fn(Point2<f64>) -> bool) -> Boundary {
+        let mut view = DrawnPlace::junction(doors, HALF).seen_from([0.0, 0.0], 0.0);
         for (index, class) in view.classes.iter_mut().enumerate() {
-            let [x, y] = GroundView::ground(index).into();
-            let on_cable = (HALF - drawn_place::TAPE..HALF).contains(&y) && x.abs() < 0.5;
-            if on_cable && *class == PixelClass::Floor {
+            if on_cable(GroundView::ground(index)) && *class == PixelClass::Floor {
                 *class = PixelClass::Stripe;
             }
         }
-        let boundary = drawn_place::bearings().look(&view);
+        drawn_place::bearings().look(&view)
+    }
+
+    #[test]
+    fn a_cable_on_the_floor_of_an_opening_is_no_wall() {
+        let (t, opening) = ([true, true, true, false], HALF - drawn_place::TAPE..HALF);
+        let boundary = with_cable(t, |at| opening.contains(&at.y) && at.x.abs() < 0.5);
         for closed in [[true, false, true, true], [false, false, true, false]] {
             let agreement = held(closed, &boundary);
             assert!(agreement.least < 0.4, "{closed:?}: {agreement:?}");
@@ -444,23 +447,34 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_cable_across_a_hallway_is_no_dead_end() {
-        let mut view =
-            DrawnPlace::junction([true, false, true, false], HALF).seen_from([0.0, 0.0], 0.0);
-        for (index, class) in view.classes.iter_mut().enumerate() {
-            let x = GroundView::ground(index).x;
-            let on_cable = (HALF - drawn_place::TAPE..HALF).contains(&x);
-            if on_cable && *class == PixelClass::Floor {
-                *class = PixelClass::Stripe;
-            }
-        }
-        let mut boundary = drawn_place::bearings().look(&view);
-        let (frame, walls) = drawn_place::walls(&boundary).unwrap();
+    fn a_cable_across_a_hallway_is_no_dead_end() {
+        let across = HALF - drawn_place::TAPE..HALF;
+        let crooked = with_cable([true, false, true, false], |at| across.contains(&at.x));
+        let (frame, walls) = drawn_place::walls(&crooked).unwrap();
         let on_wall =
             |point| walls.iter().any(|wall| wall.confirms(frame.walls_from_robot() * point));
-        boundary.confirm(on_wall);
-        let agreement = held([false, false, true, false], &boundary);
-        assert!(agreement.trust() > 0.9 && agreement.least < 0.6, "{agreement:?}");
+        let mut straight = crooked.clone();
+        straight.confirm(on_wall);
+        for (cable, most) in [(crooked, 0.1), (straight, 0.6)] {
+            let agreement = held([false, false, true, false], &cable);
+            assert!(agreement.trust() > 0.9 && agreement.least < most, "{agreement:?}");
+        }
+    }
+
+    #[test]
+    fn floor_that_ends_where_it_is_hidden_shows_no_wall() {
+        let dead_end = [false, false, true, false];
+        let drawn = DrawnPlace::junction(dead_end, HALF).seen_from([0.0, 0.0], 0.0);
+        let instead_of_stripes = |seen: PixelClass| {
+            let mut view = drawn.clone();
+            for class in view.classes.iter_mut().filter(|class| **class != PixelClass::Floor) {
+                *class = seen;
+            }
+            held(dead_end, &drawn_place::bearings().look(&view))
+        };
+        let [ends, hidden] = [PixelClass::Other, PixelClass::Unseen].map(instead_of_stripes);
+        assert!(ends.ended > 100 && ends.silent < 20, "{ends:?}");
+        assert_eq!((hidden.ended, hidden.silent), (0, ends.ended + ends.silent));
     }
 
     #[test]

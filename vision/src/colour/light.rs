@@ -167,6 +167,25 @@ mod tests {
     }
 
     #[test]
+    fn the_ring_lies_around_what_the_body_hides() {
+        for radius in [0.32, 0.7] {
+            let mut camera = Camera::superscout().sized([640, 480]);
+            camera.hidden.radius = radius;
+            let ring = FloorRing::new(&camera).pixels.into_iter().map(|pixel| {
+                let pixel = [pixel % 640, pixel / 640].map(|at| at as f64 + 0.5);
+                camera.pixel_to_ground(pixel).unwrap().coords.norm()
+            });
+            let [nearest, farthest] = ring
+                .fold([f64::INFINITY, 0.0_f64], |[nearest, farthest], at| {
+                    [nearest.min(at), farthest.max(at)]
+                });
+            let expected = RING.map(|range| radius + range);
+            assert!((nearest - expected[0]).abs() < 0.03, "{nearest} for {expected:?}");
+            assert!((farthest - expected[1]).abs() < 0.03, "{farthest} for {expected:?}");
+        }
+    }
+
+    #[test]
     fn if_the_light_changes_around_the_robot_the_middle_counts() {
         // From three quarters to five quarters of the light, as around a circle.
         let bearings = (0..360).map(|degree| f64::from(degree).to_radians().cos());

@@ -400,6 +400,52 @@ mod tests {
     }
 
     #[test]
+    fn a_possible_junction_has_its_place_and_arms_once_it_is_certain() {
+        // It seems to be half a metre farther on, and turned by 20 degrees.
+        let turned = 20.0_f64.to_radians();
+        let seems = |x: f64| {
+            let through = [0.5 - x, 0.0];
+            let line = |direction| CentreLine { through, direction: wrapped(direction + turned) };
+            let doors = vec![line(PI), line(FRAC_PI_2)];
+            let view = JunctionView { doors, turning_point: through, confidence: 0.5 };
+            (Place::Junction(view), [x, 0.0], 0.0)
+        };
+        let mut robot = Visits::by_camera(false);
+        let mut at = 0..;
+        let mut go = |(place, position, heading): Seen| {
+            let scene = Scene { place, marker: None };
+            robot.add_frame(at.next().unwrap(), &scene, &Odometry { position, heading });
+            robot.status()
+        };
+        let directions = |place: &SeenPlace| {
+            let direction = |arm: &PlaceArm| (arm.direction.to_degrees().round(), arm.certainty);
+            place.arms.iter().map(direction).collect::<Vec<_>>()
+        };
+        assert_eq!(go(hallway([-2.0, 0.0], 0.0)), None);
+        assert_eq!(go(seems(-0.8)), None);
+        let possible = go(seems(0.3)).unwrap();
+        assert!((possible.centre.x - 0.5).abs() < 1e-9, "{possible:?}");
+        let certainty = [Certainty::Certain, Certainty::Possible];
+        let [entry, others] = certainty;
+        let expected = [(-160.0, entry), (110.0, others), (20.0, others), (-70.0, others)];
+        assert_eq!(directions(&possible), expected);
+        go((junction(-0.1), [0.1, 0.0], 0.0));
+        let certain = go((junction(-0.2), [0.2, 0.0], 0.0)).unwrap();
+        assert!(certain.centre.x.abs() < 1e-9, "{certain:?}");
+        assert_eq!(directions(&certain), [(180.0, entry), (90.0, entry)]);
+    }
+
+    #[test]
+    fn furniture_far_beside_a_junction_does_not_end_its_visit() {
+        // Before the second image of the junction, without which it is not decided.
+        let far = possible((junction(2.0), [-0.3, 0.0], 0.0));
+        let mut places = [visit(), vec![hallway([0.0, 1.0], FRAC_PI_2)]].concat();
+        places.insert(2, far);
+        assert_eq!(events(&places, false), (vec![Some(1)], vec![]));
+        assert_eq!(visits(&places, false).visits.len(), 1);
+    }
+
+    #[test]
     fn furniture_beside_a_junction_does_not_change_its_visit() {
         // A false dead end before it, at it and behind it.
         let false_end = |ahead: f64, x: f64| {
