@@ -1,7 +1,6 @@
 //! The smallest worlds that a marker cannot distinguish.
 
 use pyo3::prelude::*;
-use rayon::ThreadPoolBuilder;
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Findings, PlacedWorld, Unfinished},
     enumerate::{Class, Watch},
@@ -56,11 +55,8 @@ pub(crate) fn counterexample(
         let own = OwnMarker::new(marker.clone().unbind());
         let kind: &dyn Marker = &own;
         let search = AmbiguitySearch::new(class, edges, kind).map_err(size)?;
-        // The function is called by one thread at a time, and always in the same order.
-        let pool = ThreadPoolBuilder::new().num_threads(1).build();
-        let pool = pool.map_err(|cause| error(py, "InternalError", cause))?;
         let findings = run_watched(py, progress, Some(own.stopper()), |watcher| {
-            pool.install(|| search.run(&OwnWatch { watcher, marker: &own }))
+            search.run(&OwnWatch { watcher, marker: &own })
         })?;
         if let Some(failure) = own.failure() {
             return Err(failure);

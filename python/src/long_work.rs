@@ -1,5 +1,5 @@
-//! Long work: without the interpreter lock, on a thread of its own, while the thread of the caller handles
-//! signals and shows progress.
+//! Long work: without the interpreter lock, on threads of its own, while the thread of the caller handles signals and
+//! shows progress. The threads end with the work: a process that is forked does not have its parent's.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -12,9 +12,10 @@ use std::{
 };
 
 use pyo3::prelude::*;
-use toposlam_model::enumerate::Watch;
+use rayon::ThreadPoolBuilder;
+use toposlam_model::enumerate::{Watch, threads};
 
-use crate::error::internal;
+use crate::error::{error, internal};
 
 /// Counts the cases that are done, and stops the work.
 #[derive(Default)]
@@ -48,8 +49,8 @@ impl Watch for Watcher {
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Does long work. `progress` is called with the number of cases since the last call. After a signal the work
-/// is stopped, and the exception of the signal is raised. If the work calls functions in Python, the method
-/// `stop` of `calls` ends such a call.
+/// is stopped, and the exception of the signal is raised. If the work calls functions in Python, it does so in one
+/// thread, always in the same order, and the method `stop` of `calls` ends such a call.
 pub(crate) fn run_watched<R: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -57,13 +58,16 @@ pub(crate) fn run_watched<R: Send>(
     work: impl FnOnce(&Watcher) -> R + Send,
 ) -> PyResult<R> {
     let watcher = Watcher::default();
+    let threads = if calls.is_some() { 1 } else { threads() };
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|cause| error(py, "InternalError", cause))?;
     let progress = progress.map(|progress| progress.clone().unbind());
     let result = py.detach(|| {
         thread::scope(|scope| {
             let (done, end) = mpsc::channel();
-            let shared = &watcher;
+            let (shared, pool) = (&watcher, &pool);
             scope.spawn(move || {
-                let result = catch_unwind(AssertUnwindSafe(|| work(shared)));
+                let result = catch_unwind(AssertUnwindSafe(|| pool.install(|| work(shared))));
                 // The caller waits for it.
                 let _ = done.send(result);
             });

@@ -86,15 +86,17 @@ impl CoreWorld {
         Ok(Self(NamedWorld { vertex_names, ..world }))
     }
 
-    /// A world from two permutations, and the number of each dart in it.
+    /// A world from two permutations, and the number of each dart in it. Errors count darts from `least`.
     #[staticmethod]
     fn from_permutations(
         py: Python<'_>,
         opposite: Vec<u32>,
         clockwise: Vec<u32>,
+        least: u32,
     ) -> PyResult<(Self, Vec<u32>)> {
         let made = guarded(py, || Ok(EmbeddedGraph::from_permutations(&opposite, &clockwise)))?;
-        let (graph, number) = made.map_err(|fault| error(py, fault_class(&fault), fault))?;
+        let (graph, number) =
+            made.map_err(|fault| error(py, fault_class(&fault), fault.counted_from(least)))?;
         let world = NamedWorld::numbered("", "", graph, None);
         Ok((Self(world), number.into_iter().map(|dart| dart.0).collect()))
     }

@@ -1,5 +1,6 @@
 """Worlds that a marker cannot distinguish; numbers from docs/commands.md and the paper."""
 
+import itertools
 import os
 import signal
 import subprocess
@@ -107,6 +108,31 @@ def test_the_percepts_have_the_values_of_the_function():
     walk = ts.compare(one, other, marker=distance).walk
     assert walk.actions == () and [percept.degree for percept in walk.percepts] == [1, 2]
     assert [percept.marker for percept in walk.percepts] == ["here", "here"]
+
+
+def test_a_marker_function_that_is_no_function_of_what_a_robot_knows():
+    one, other = ts.World.load("worlds/figure-1a.toml"), ts.World.load("worlds/figure-1b.toml")
+    numbers = itertools.count()
+
+    def at_first_door(pose, world):
+        return pose.index == 0 and pose.vertex == world.start.vertex
+
+    for marker, text in [
+        (lambda pose, world: next(numbers), "gives .*, and then "),
+        (lambda pose, world: pose.vertex == "a", "in a copy"),
+        (lambda pose, world: pose.vertex == "v0", "in a copy"),
+        (lambda pose, world: world.vertices[0] == pose.vertex, "in a copy"),
+        (at_first_door, "in a copy"),
+    ]:
+        with pytest.raises(errors.MarkerFunctionError, match=text):
+            ts.counterexample(marker, cls="simple", edges=4)
+        with pytest.raises(errors.MarkerFunctionError, match=text):
+            ts.compare(one, other, marker=marker)
+    # The names of the caller are those of the worlds that are compared.
+    with pytest.raises(
+        errors.MarkerFunctionError, match=r"pose x:0 in <World figure-1a.* gives True, and False"
+    ):
+        ts.compare(one, other, marker=lambda pose, world: pose.vertex == "x")
 
 
 def test_the_words_for_a_directed_edge_are_those_of_the_protocol():

@@ -55,8 +55,6 @@ def test_both_permutations_count_from_the_same_dart():
     assert ts.World.from_permutations("(0,1)(2,3)", "(1,2)").is_isomorphic(path)
     middle = ts.World.from_permutations("(0,2)(1,3)", "(1,2)")
     assert middle.degree(middle.start.vertex) == 1
-    # An iterator is read once.
-    assert ts.World.from_permutations(iter([1, 0, 3, 2]), iter([0, 2, 1, 3])).is_isomorphic(path)
     assert ts.World.from_permutations({1: 2, 2: 1, 3: 4, 4: 3}, {1: 1, 2: 3, 3: 2, 4: 4}).is_isomorphic(path)
 
 
@@ -68,7 +66,8 @@ def test_vertices_of_any_kind_are_found():
     assert world.darts((0, 1)) == world.darts("(0, 1)")
     for same in [world.with_start(((1, 1), 1)), pickle.loads(pickle.dumps(world)), world.mirror_image()]:
         assert same.opposite(((1, 1), 0)).index in (0, 1)
-    rooms = ts.World({"Room 3": ["a/b"], "a/b": ["Room 3"]}, start=("a/b", 0))
+    with pytest.warns(errors.RenamedVertexWarning):
+        rooms = ts.World({"Room 3": ["a/b"], "a/b": ["Room 3"]}, start=("a/b", 0))
     assert rooms.vertices == ("Room 3", "a_b")
     assert rooms.opposite(("a/b", 0)) == ("Room 3", 0) == rooms.opposite("a_b:Room 3")
 
@@ -159,7 +158,17 @@ WRONG = [
     ({"a": 7}, errors.WorldTypeError, "needs a list"),
     ({"a": "b", "b": "a"}, errors.WorldTypeError, "needs a list"),
     ({1: [2], "1": [2], 2: [1, "1"]}, errors.WorldError, "two vertices have the name 1"),
-    (None, errors.WorldTypeError, "NoneType"),
+    (None, errors.WorldTypeError, "not None; .* None if the graph is not planar"),
+    ((False, None), errors.WorldTypeError, "whose second is the embedding"),
+    ({"a": {"b"}, "b": ["a"]}, errors.WorldTypeError, "type set has no order"),
+    ({"a": frozenset("b"), "b": ["a"]}, errors.WorldTypeError, "type frozenset has no order"),
+    ({"a": {"b": 0}, "b": ["a"]}, errors.WorldTypeError, "type dict has no order"),
+    ({"a": {"b": 0}.keys(), "b": ["a"]}, errors.WorldTypeError, "type dict_keys has no order"),
+    ({"a": {0: "b"}.values(), "b": ["a"]}, errors.WorldTypeError, "type dict_values has no order"),
+    ({"a": iter(["b"]), "b": ["a"]}, errors.WorldTypeError, "can be read only once"),
+    ({"a": (x for x in "b"), "b": ["a"]}, errors.WorldTypeError, "type generator can be read only once"),
+    ([{1}, {0}], errors.WorldTypeError, "vertex 0 .* type set has no order"),
+    ({"a", "b"}, errors.WorldTypeError, "type set"),
     ([1, 2], errors.WorldTypeError, "list"),
     ([[1], []], errors.MissingEdgeError, "does not list 0 back"),
     ("worlds/figure-1a.toml", errors.WorldTypeError, "str"),
@@ -197,11 +206,44 @@ def test_a_graph_of_networkx_without_embedding():
         ([1, 0], [0, 1, 2]),
         ([], []),
         ([(0, -1)], [0, 1]),
+        ({0, 1}, [0, 1]),
+        ([1, 0], iter([0, 1])),
+        ([1, 0], {0: 0, 1: 1}.values()),
     ],
 )
 def test_what_are_not_permutations(opposite, clockwise):
     with pytest.raises((errors.PermutationError, errors.NoEdgeError)):
         ts.World.from_permutations(opposite, clockwise)
+
+
+@pytest.mark.parametrize("least", [0, 1])
+def test_errors_count_darts_as_the_permutations_do(least):
+    def counted(*images):
+        return [image + least for image in images]
+
+    with pytest.raises(errors.PermutationError, match=f"dart {least} is its own opposite"):
+        ts.World.from_permutations(counted(0, 1), counted(0, 1))
+    with pytest.raises(errors.PermutationError, match=f"the opposite of dart {least} is {1 + least}, whose"):
+        ts.World.from_permutations(counted(1, 2, 0, 3), counted(0, 1, 2, 3))
+    with pytest.raises(errors.NotConnectedError, match=f"dart {2 + least} cannot"):
+        ts.World.from_permutations(counted(1, 0, 3, 2), counted(0, 1, 2, 3))
+
+
+def test_a_name_that_no_world_file_has_is_changed_with_a_warning():
+    with pytest.warns(errors.RenamedVertexWarning, match="'a/b' is 'a_b_2'") as warned:
+        world = ts.World({"a/b": ["a_b"], "a_b": ["a/b", "a//b"], "a//b": ["a_b"]})
+    assert world.vertices == ("a_b_2", "a_b", "a_b_3")
+    assert world.degree("a//b") == 1 and world.darts("a/b") == [("a_b_2", 0)]
+    assert warned[0].filename == __file__
+    # Other vertices have no text of their own.
+    assert ts.World({(0, 0): [(0, 1)], (0, 1): [(0, 0)]}).vertices == ("(0, 0)", "(0, 1)")
+
+
+def test_the_doors_of_a_walk_have_an_order():
+    world = ts.World.load("worlds/figure-1a.toml")
+    for doors in [{1, 2}, iter([1, 2]), "12", {1: 2}]:
+        with pytest.raises(errors.WorldTypeError, match="doors of a walk are a list"):
+            world.walk(world.start, doors)
 
 
 def test_permutations_of_two_components():

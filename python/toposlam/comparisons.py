@@ -9,7 +9,7 @@ from typing import Union
 
 from . import _core
 from .errors import SizeError
-from .markers import Marker, OwnPercept, of_core
+from .markers import Marker, OwnPercept, Sightings, of_core
 from .progress import bar
 from .worlds import Dart, Picture, World, world_of
 
@@ -83,6 +83,10 @@ def compare(one: World, other: World, marker: Marker = "directional") -> Compari
     (0, 1, 1)
     """
     one, other, kind = world_of(one), world_of(other), of_core(marker)
+    if isinstance(kind, Sightings):
+        # With the names of the caller, which the graphs in the extension module do not have.
+        for world in (one, other):
+            kind.of_world(world)
     found = _core.compare(one._core, one.facing(), other._core, other.facing(), kind)
     here, there = one.darts(), other.darts()
     images, pairs, percepts = found["bijection"], found["relation"], found["percepts"]

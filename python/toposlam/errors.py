@@ -122,11 +122,16 @@ class UnknownStartError(WorldError):
     """A start is not in its world."""
 
 
+class RenamedVertexWarning(UserWarning):
+    """A vertex has another name than its text: no name in a world file has all of its letters."""
+
+
 # Markers
 
 
 class MarkerFunctionError(ToposlamError):
-    """A marker's function raised an exception, or returned something that is not hashable."""
+    """A marker's function raised an exception, returned something that is not hashable, or does not give the
+    same each time, and for the same pose in each copy of a world."""
 
 
 # Explorers

@@ -28,7 +28,7 @@ from .errors import (
     WrongMapError,
     WrongPoseError,
 )
-from .maps import Doors, doors_of
+from .maps import Doors, doors_of, shown
 from .threads import raise_in
 from .worlds import World
 
@@ -152,7 +152,7 @@ def judge(answer: Answer, start: _core.Start, robot: _core.Robot) -> ExplorerErr
         return NoAnswerError("it returned None, and not a map and a pose; is a return missing?")
     if not (isinstance(answer, (tuple, list)) and len(answer) == 2):
         return AnswerError(
-            "it returned " + _shown(answer) + ", and not a pair of a map and a pose (vertex, index)"
+            "it returned " + shown(answer) + ", and not a pair of a map and a pose (vertex, index)"
         )
     map_, pose = answer
     try:
@@ -194,8 +194,3 @@ def _numbers(map_: object, pose: object) -> tuple[Doors, int, int]:
         return doors, 0, doors.number(pose)
     except UnknownStartError as cause:
         raise UnknownStartError(f"the pose {pose!r} is not in the map: {cause.message}") from None
-
-
-def _shown(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."

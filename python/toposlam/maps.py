@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, MappingView, Sequence, Set
 from typing import Any, NamedTuple
 
 from .errors import (
@@ -65,6 +65,26 @@ def is_int(value: object) -> bool:
     return isinstance(value, int) or (hasattr(value, "__index__") and not hasattr(value, "__len__"))
 
 
+def ordered(value: object) -> list[Any] | None:
+    """The entries of a list, a tuple or an array, or None for what has no order, or can be read only once:
+    sets, dicts and their views, generators, texts."""
+    if isinstance(value, (str, bytes, bytearray, Mapping)) or not hasattr(value, "__getitem__"):
+        return None
+    try:
+        return list(value) if len(value) >= 0 else None  # type: ignore[arg-type, call-overload]
+    except TypeError:
+        return None
+
+
+def unordered(value: object) -> str:
+    """What is said of a value that is not `ordered`."""
+    if isinstance(value, (Set, Mapping, MappingView)):
+        return f"{_kind(value)} has no order: write a list"
+    if isinstance(value, Iterator):
+        return f"{_kind(value)} can be read only once: write list(...)"
+    return f"{shown(value)} is not a list"
+
+
 def is_networkx(value: object) -> bool:
     """Whether a value is a graph of networkx, which is not imported for this."""
     networkx = sys.modules.get("networkx")
@@ -77,15 +97,33 @@ def doors_of(value: object) -> Doors:
         return of_networkx(value)
     if isinstance(value, Mapping):
         return of_dict(value)
-    if isinstance(value, (list, tuple)) and all(isinstance(listed, (list, tuple)) for listed in value):
-        return of_dict(dict(enumerate(value)))
+    listed = ordered(value)
+    if listed is not None and not _is_planarity(listed):
+        return of_dict(dict(enumerate(listed)))
+    if value is None or listed is not None:
+        raise WorldTypeError(
+            f"a map is a dict, a list of lists, a networkx.PlanarEmbedding or a World, not {shown(value)}; "
+            "networkx.check_planarity returns a pair, whose second is the embedding, or None if the graph is "
+            "not planar: then write the clockwise order of each vertex as a dict"
+        )
     raise WorldTypeError(
         f"a map is a dict, a list of lists, a networkx.PlanarEmbedding or a World, not {_kind(value)}"
     )
 
 
+def _is_planarity(value: list[Any]) -> bool:
+    """Whether a value is what `networkx.check_planarity` returns."""
+    return len(value) == 2 and isinstance(value[0], bool)
+
+
 def _kind(value: object) -> str:
     return f"a value of type {type(value).__name__}"
+
+
+def shown(value: object) -> str:
+    """A value in a message."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def of_dict(lists: Mapping[Any, Any]) -> Doors:
@@ -94,11 +132,11 @@ def of_dict(lists: Mapping[Any, Any]) -> Doors:
         raise NoEdgeError("there is no vertex; a world has at least one edge")
     entries: dict[Hashable, list[Any]] = {}
     for vertex, listed in lists.items():
-        if isinstance(listed, (str, bytes)) or not isinstance(listed, Iterable):
-            raise WorldTypeError(
-                f"vertex {vertex!r} needs a list of its neighbours in clockwise order, not {listed!r}"
-            )
-        entries[vertex] = list(listed)
+        order = ordered(listed)
+        if order is None:
+            why = unordered(listed)
+            raise WorldTypeError(f"vertex {vertex!r} needs a list of its neighbours, clockwise: {why}")
+        entries[vertex] = order
     if not any(entries.values()):
         raise NoEdgeError("there is no edge; a world has at least one")
     if all(_is_vertex(entry, lists) for listed in entries.values() for entry in listed):
@@ -262,9 +300,9 @@ def _read(name: str, permutation: object) -> _Permutation:
         if not all(is_int(dart) for dart in darts) or set(permutation) != set(permutation.values()):
             raise PermutationError(f"{name}: the images are not the darts")
         permutation = [permutation[dart] for dart in sorted(permutation)]
-    if not isinstance(permutation, Iterable):
-        raise PermutationError(f"{name}: {_kind(permutation)} is not a permutation")
-    listed = list(permutation)
+    listed = ordered(permutation)
+    if listed is None:
+        raise PermutationError(f"{name} needs a list of images or of cycles: {unordered(permutation)}")
     if listed and all(isinstance(cycle, (tuple, list)) for cycle in listed):
         return _of_cycles(name, listed)
     if not all(is_int(image) for image in listed):

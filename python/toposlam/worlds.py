@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
-from collections.abc import Hashable, Iterable, Mapping
+import warnings
+from collections.abc import Hashable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, Union
@@ -18,13 +20,14 @@ from .errors import (
     NoStartError,
     NotSimpleError,
     PictureError,
+    RenamedVertexWarning,
     UnknownStartError,
     WorldError,
     WorldFileError,
     WorldTypeError,
 )
 from .limits import MAX_MOVES, check_limit
-from .maps import doors_of, is_int, of_permutations
+from .maps import doors_of, is_int, of_permutations, ordered, unordered
 from .progress import library
 
 
@@ -79,7 +82,8 @@ class World:
 
     `start` is the dart behind the robot at the start, along which a directional marker points. Without
     one, it is the first door of the first vertex. A vertex has the name `str(vertex)`, with `_` for what no
-    name in a world file has; where a vertex is asked for, both do.
+    name in a world file has; a `RenamedVertexWarning` says so if it is a text. Where a vertex is asked for,
+    both do.
 
     Raises a `WorldError` of the class that is the cause.
 
@@ -175,7 +179,7 @@ class World:
         <World world: 3 vertices, 2 edges, genus 0, start v0:v1>
         """
         pairs, turns, least = of_permutations(opposite, clockwise)
-        core, numbers = _core.World.from_permutations(pairs, turns)
+        core, numbers = _core.World.from_permutations(pairs, turns, least)
         first = least if start is None else start
         if isinstance(first, bool) or not isinstance(first, int) or not 0 <= first - least < len(numbers):
             raise UnknownStartError(f"there is no dart {start!r}")
@@ -314,9 +318,12 @@ class World:
         vertex, index = self._places[self.number(pose)]
         return self.opposite(Dart(vertex, (index + door) % self.degree(vertex)))
 
-    def walk(self, pose: DartLike, doors: Iterable[int]) -> Dart:
-        """The pose at the end of a door sequence."""
-        for door in doors:
+    def walk(self, pose: DartLike, doors: Sequence[int]) -> Dart:
+        """The pose at the end of a door sequence. Raises `WorldTypeError` if it is no sequence."""
+        sequence = ordered(doors)
+        if sequence is None:
+            raise WorldTypeError(f"the doors of a walk are a list: {unordered(doors)}")
+        for door in sequence:
             pose = self.after(pose, door)
         return self._places[self.number(pose)]
 
@@ -442,16 +449,27 @@ def _rebuilt(text: str, name: str, vertices: dict[Hashable, str]) -> World:
 
 
 def _names(vertices: list[Hashable]) -> dict[Hashable, str]:
-    """The names of the vertices: their texts, with `_` for letters that no name in a world file has."""
-    names = {}
-    for number, vertex in enumerate(vertices):
-        text = str(vertex)
-        if not _core.is_name(text):
-            kept = "".join(letter if letter == " " or _core.is_name(letter) else "_" for letter in text)
-            text = re.sub("_+", "_", kept).strip("_ ") or f"v{number}"
-        names[vertex] = text
-    texts = list(names.values())
+    """The names of the vertices: their texts, with `_` for letters that no name in a world file has. Warns of
+    texts that are changed; a number tells apart those that would be equal."""
+    texts = [str(vertex) for vertex in vertices]
     if len(set(texts)) < len(texts):
         twice = next(text for text in texts if texts.count(text) > 1)
         raise WorldError(f"two vertices have the name {twice}")
+    taken = {text for text in texts if _core.is_name(text)}
+    names: dict[Hashable, str] = {}
+    for number, (vertex, text) in enumerate(zip(vertices, texts)):
+        name = text
+        if not _core.is_name(text):
+            kept = "".join(letter if letter == " " or _core.is_name(letter) else "_" for letter in text)
+            kept = re.sub("_+", "_", kept).strip("_ ") or f"v{number}"
+            others = (f"{kept}_{count}" for count in itertools.count(2))
+            name = next(text for text in itertools.chain([kept], others) if text not in taken)
+            taken.add(name)
+        names[vertex] = name
+    changed = [vertex for vertex in vertices if isinstance(vertex, str) and names[vertex] != vertex]
+    if changed:
+        listed = ", ".join(f"{vertex!r} is {names[vertex]!r}" for vertex in changed[:3])
+        more = f", and {len(changed) - 3} more" if len(changed) > 3 else ""
+        text = f"no name in a world file has all of these letters: {listed}{more}"
+        warnings.warn(text, RenamedVertexWarning, stacklevel=3)
     return names

@@ -39,12 +39,11 @@ use super::{
     progress::Progress,
     run_choices,
     text::counted,
-    use_threads,
     version::version,
     write_world_or_picture,
 };
 use estimate::EstimateOptions;
-use explorer::{ExplorerOptions, ExplorerSweep};
+use explorer::{ExplorerCommand, ExplorerOptions, ExplorerSweep};
 use journal::{CheckJournal, JournalHeader};
 use line::SizeLine;
 use report::CheckReport;
@@ -134,7 +133,7 @@ pub(super) struct CheckArguments {
 
     /// Number of threads, up to 1024 [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    pub(super) threads: Option<u16>,
 
     /// Print one JSON object for each number of edges
     #[arg(long)]
@@ -217,7 +216,6 @@ enum Work {
 
 impl CheckArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        use_threads(self.threads)?;
         self.ci.check_places()?;
         if self.add {
             return self.add_shards(out);
@@ -302,7 +300,9 @@ impl CheckArguments {
             }
             CiCase::add_not_checked(&mut cases, names.into_iter(), self.from.as_deref());
         }
-        self.ci.write("check", &cases)?;
+        let explorer = self.explorer.explorer.as_ref().and_then(ExplorerCommand::file);
+        let written = explorer.or(self.failed.as_deref().filter(|_| !all_mapped));
+        self.ci.write("check", &cases, written)?;
         if let Some(path) = &self.worst {
             write_worst(path, worst)?;
         }

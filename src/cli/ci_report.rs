@@ -1,4 +1,7 @@
 //! Results for CI systems: JUnit XML, SARIF 2.1.0, and the annotations of GitHub Actions.
+//!
+//! A SARIF log has what code scanning of GitHub accepts: it takes each result for a problem, refuses a file in which a
+//! result has no place, and shows a limited number of results and of letters.
 
 use std::{
     env,
@@ -7,8 +10,14 @@ use std::{
 };
 
 use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
 
-use super::{CliError, Outcome, output, terminal, version};
+use super::{CliError, Outcome, output, terminal, text::counted, version};
+
+/// More results are not shown. Limits of code scanning.
+const MOST_RESULTS: usize = 5_000;
+/// More letters of a message are not shown. Limits of code scanning: 1,024.
+const MOST_LETTERS: usize = 1_000;
 
 /// The options of a verb that gives verdicts.
 #[derive(clap::Args, Debug, Default)]
@@ -55,12 +64,29 @@ impl CiOptions {
     }
 
     /// Writes the reports. In a workflow of GitHub Actions, each case that does not hold becomes an
-    /// annotation, on standard error.
-    pub(super) fn write(&self, verb: &str, cases: &[CiCase]) -> Result<(), CliError> {
+    /// annotation, on standard error. In a SARIF log, the place of a case without a file is `written`, a file that the
+    /// command writes, or the log itself.
+    pub(super) fn write(
+        &self,
+        verb: &str,
+        cases: &[CiCase],
+        written: Option<&Path>,
+    ) -> Result<(), CliError> {
         for path in &self.report {
             let text = match path.extension() {
                 Some(ending) if ending == "xml" => junit(verb, cases),
-                _ => format!("{:#}\n", sarif(verb, cases)),
+                _ => {
+                    let left_out =
+                        cases.iter().filter(|case| case.outcome != Outcome::Holds).count();
+                    if let Some(left_out @ 1..) = left_out.checked_sub(MOST_RESULTS) {
+                        let left_out = counted(left_out, "result");
+                        remark!(
+                            "{left_out} of more than {MOST_RESULTS} left out of {}",
+                            path.display()
+                        );
+                    }
+                    format!("{:#}\n", sarif(verb, cases, written.unwrap_or(path)))
+                }
             };
             output::write_whole(path, text.as_bytes())?;
         }
@@ -86,8 +112,12 @@ fn junit(verb: &str, cases: &[CiCase]) -> String {
             format!(" file=\"{}\"", attribute(&file.display().to_string()))
         });
         let (name, message) = (attribute(name), attribute(message));
+        // Jenkins shows the attribute, and GitLab the content.
         let end = |element: &str, kind: &str| {
-            format!(">\n      <{element} type=\"{kind}\" message=\"{message}\"/>\n    </testcase>")
+            format!(
+                ">\n      <{element} type=\"{kind}\" message=\"{message}\">{message}</{element}>\n    \
+                 </testcase>"
+            )
         };
         let end = match outcome {
             Outcome::Holds => "/>".to_owned(),
@@ -117,26 +147,30 @@ fn attribute(text: &str) -> String {
     value
 }
 
-/// A SARIF log. What is not known has the kind `open`: there was not enough information to decide.
-fn sarif(verb: &str, cases: &[CiCase]) -> Value {
-    let result = |case: &CiCase| {
-        let (kind, level) = match case.outcome {
-            Outcome::Holds => ("pass", "none"),
-            Outcome::Violated => ("fail", "error"),
-            Outcome::Incomplete => ("open", "none"),
-        };
-        let mut result = json!({
+/// A SARIF log of what does not hold. What is not known has the kind `open`: there was not enough information to
+/// decide. A case without a file has the place `elsewhere`.
+fn sarif(verb: &str, cases: &[CiCase], elsewhere: &Path) -> Value {
+    let result = |case: &CiCase, kind: &str, level: &str| {
+        let place = json!({
+            "artifactLocation": { "uri": uri(case.file.as_deref().unwrap_or(elsewhere)) },
+            "region": { "startLine": 1 },
+        });
+        let message = format!("{}: {}", case.name, case.message);
+        json!({
             "ruleId": verb,
             "kind": kind,
             "level": level,
-            "message": { "text": format!("{}: {}", case.name, case.message) },
-        });
-        if let Some(file) = &case.file {
-            let uri = json!({ "uri": uri(file) });
-            result["locations"] = json!([{ "physicalLocation": { "artifactLocation": uri } }]);
-        }
-        result
+            "message": { "text": shortened(message) },
+            "locations": [{ "physicalLocation": place }],
+            "partialFingerprints": { "primaryLocationLineHash": fingerprint(verb, &case.name) },
+        })
     };
+    let with = |outcome, kind: &'static str, level: &'static str| {
+        let of_kind = cases.iter().filter(move |case| case.outcome == outcome);
+        of_kind.map(move |case| result(case, kind, level))
+    };
+    let results =
+        with(Outcome::Violated, "fail", "error").chain(with(Outcome::Incomplete, "open", "none"));
     json!({
         "$schema": "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json",
         "version": "2.1.0",
@@ -146,9 +180,26 @@ fn sarif(verb: &str, cases: &[CiCase]) -> Value {
                 "semanticVersion": version::version(),
                 "rules": [{ "id": verb, "shortDescription": { "text": rule(verb) } }],
             } },
-            "results": cases.iter().map(result).collect::<Vec<_>>(),
+            "results": results.take(MOST_RESULTS).collect::<Vec<_>>(),
         }],
     })
+}
+
+fn shortened(message: String) -> String {
+    if message.chars().count() <= MOST_LETTERS {
+        return message;
+    }
+    message.chars().take(MOST_LETTERS - 1).chain(['…']).collect()
+}
+
+/// What tells a case apart in the logs of several days.
+fn fingerprint(verb: &str, name: &str) -> String {
+    let digest = Sha256::digest(format!("{verb}\n{name}"));
+    let mut text = String::new();
+    for byte in &digest[..8] {
+        let _ = write!(text, "{byte:02x}");
+    }
+    text + ":1"
 }
 
 /// What a verb checks.
@@ -161,10 +212,19 @@ fn rule(verb: &str) -> &'static str {
     }
 }
 
-/// A path as a relative reference: bytes that a URI does not allow are percent-encoded.
+/// A path as a reference that is relative to the working folder, if it is in there: bytes that a URI does not allow are
+/// percent-encoded.
 fn uri(path: &Path) -> String {
-    let mut uri = String::new();
-    for byte in path.to_string_lossy().replace('\\', "/").bytes() {
+    let folder = env::current_dir().unwrap_or_default();
+    let path: PathBuf = path.strip_prefix(folder).unwrap_or(path).components().collect();
+    let path = path.strip_prefix(".").unwrap_or(&path);
+    let text = path.to_string_lossy().replace('\\', "/");
+    let mut uri = match (path.is_absolute(), text.starts_with('/')) {
+        (false, _) => String::new(),
+        (true, true) => "file://".to_owned(),
+        (true, false) => "file:///".to_owned(),
+    };
+    for byte in text.bytes() {
         if byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte) {
             uri.push(char::from(byte));
         } else {
@@ -218,8 +278,8 @@ mod tests {
         for part in [
             "tests=\"3\" failures=\"1\" errors=\"1\"",
             "name=\"b &lt; c\" file=\"a b/c,d.mcap\"",
-            "<failure type=\"violated\" message=\"50 % of &quot;b&quot; are",
-            "<error type=\"not known\" message=\"a limit was reached\"/>",
+            "<failure type=\"violated\" message=\"50 % of &quot;b&quot; are wrong\">50 % of &quot;b&quot; are wrong</failure>",
+            "<error type=\"not known\" message=\"a limit was reached\">a limit was reached</error>",
         ] {
             assert!(xml.contains(part), "{part}: {xml}");
         }
@@ -227,18 +287,57 @@ mod tests {
     }
 
     #[test]
-    fn a_sarif_log_has_three_kinds() {
-        let log = sarif("conform", &cases());
-        let kinds: Vec<_> = (0..3).map(|index| &log["runs"][0]["results"][index]["kind"]).collect();
-        assert_eq!(kinds, ["pass", "fail", "open"]);
-        let location = &log["runs"][0]["results"][1]["locations"][0]["physicalLocation"];
-        assert_eq!(location["artifactLocation"]["uri"], "a%20b/c%2Cd.mcap");
+    fn a_sarif_log_has_what_does_not_hold_each_with_a_place() {
+        let log = sarif("conform", &cases(), Path::new("c.sarif"));
+        let results = log["runs"][0]["results"].as_array().unwrap();
+        let kinds: Vec<_> = results.iter().map(|result| &result["kind"]).collect();
+        assert_eq!(kinds, ["fail", "open"]);
+        let place = |at: usize| &results[at]["locations"][0]["physicalLocation"];
+        assert_eq!(place(0)["artifactLocation"]["uri"], "a%20b/c%2Cd.mcap");
+        assert_eq!(place(1)["artifactLocation"]["uri"], "c.sarif");
+        let fingerprints = |name| {
+            let mut cases = cases();
+            cases[1].name = String::from(name);
+            sarif("check", &cases, Path::new(""))["runs"][0]["results"][0]["partialFingerprints"]
+                .clone()
+        };
+        assert_eq!(fingerprints("b"), fingerprints("b"));
+        assert_ne!(fingerprints("b"), fingerprints("c"));
+    }
+
+    #[test]
+    fn a_sarif_log_keeps_the_limits_of_code_scanning() {
+        let [_, violated, open] = cases();
+        let long = CiCase { message: "ä".repeat(2_000), ..violated };
+        let cases = [vec![open; MOST_RESULTS], vec![long]].concat();
+        let log = sarif("check", &cases, Path::new("c.sarif"));
+        let results = log["runs"][0]["results"].as_array().unwrap();
+        // What is violated comes first.
+        assert_eq!((results.len(), &results[0]["kind"]), (MOST_RESULTS, &json!("fail")));
+        let text = results[0]["message"]["text"].as_str().unwrap();
+        assert!(text.chars().count() == MOST_LETTERS && text.ends_with("ä…"), "{text}");
+    }
+
+    #[test]
+    fn a_place_is_relative_to_the_working_folder_or_absolute() {
+        let here = env::current_dir().unwrap();
+        for (path, expected) in [
+            (Path::new("./a/./b c.toml"), "a/b%20c.toml"),
+            (&here.join("logs/a.mcap"), "logs/a.mcap"),
+            (Path::new("../a.mcap"), "../a.mcap"),
+            #[cfg(unix)]
+            (Path::new("/nowhere/a.mcap"), "file:///nowhere/a.mcap"),
+        ] {
+            assert_eq!(uri(path), expected);
+        }
     }
 
     #[test]
     fn each_verb_has_a_rule_of_its_own() {
-        let text =
-            |verb| sarif(verb, &cases())["runs"][0]["tool"]["driver"]["rules"][0].to_string();
+        let text = |verb| {
+            sarif(verb, &cases(), Path::new(""))["runs"][0]["tool"]["driver"]["rules"][0]
+                .to_string()
+        };
         for (verb, what) in [
             ("check", "map"),
             ("counterexample", "worlds"),

@@ -264,7 +264,7 @@ impl ConformArguments {
             cases.push(CiCase { name, outcome, message, file: None });
             reports.required = Some(required);
         }
-        self.ci.write("conform", &cases)?;
+        self.ci.write("conform", &cases, self.logs.first().map(PathBuf::as_path))?;
         if let Some(path) = self.html.as_ref().filter(|_| !reports.logs.is_empty()) {
             output::write_whole(path, page::conform_page(&reports, &origin::origin()).as_bytes())?;
         }

@@ -22,7 +22,6 @@ use super::{
     marker_kinds, output,
     progress::Progress,
     text::counted,
-    use_threads,
 };
 use memory::MemoryLimit;
 use pairs::WorldPairs;
@@ -108,7 +107,7 @@ pub(super) struct CounterexampleArguments {
 
     /// Number of threads, up to 1024 [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    pub(super) threads: Option<u16>,
 
     /// Print one JSON object for each number of edges, and one for the smallest pair
     #[arg(long)]
@@ -130,7 +129,6 @@ enum Expectation {
 
 impl CounterexampleArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        use_threads(self.threads)?;
         self.ci.check_places()?;
         if let Some(folder) = &self.atlas {
             return atlas::write(folder, self.max_edges, self.memory);
@@ -157,9 +155,13 @@ impl CounterexampleArguments {
             output::make_folder(folder)?;
         }
         let out = &mut SharedOutput::new(out, is_first);
-        let mut report = SearchReport::new(out, self.json, self.class, edges, searches.len());
+        let has_page = self.html.is_some();
+        let mut report =
+            SearchReport::new(out, self.json, self.class, edges, searches.len(), has_page);
         let mut outcome = Outcome::Holds;
         let mut cases = Vec::new();
+        // A file with a world of a pair.
+        let mut written = None;
         let mut left = searches.iter();
         for (marker, search) in left.by_ref() {
             let progress = Progress::new(marker.name(), "placed worlds")?;
@@ -174,7 +176,7 @@ impl CounterexampleArguments {
                 Err(unfinished) => {
                     cases.push(self.ci_case(*marker, edges, Err(&unfinished)));
                     if is_first {
-                        self.ci.write("counterexample", &cases)?;
+                        self.ci.write("counterexample", &cases, None)?;
                     }
                     return pairs::report_unfinished(&unfinished);
                 }
@@ -187,6 +189,10 @@ impl CounterexampleArguments {
                 found.write_page(path, *marker)?;
             }
             let pairs = found.pairs().len();
+            let file = folder.zip(found.worlds.first());
+            let file = file.map(|(folder, world)| folder.join(format!("{}.toml", world.name)));
+            let page = self.html.clone().filter(|_| pairs > 0);
+            written = written.or(file).or(page);
             report.marker(*marker, &findings, found)?;
             if let Some(cluster) = &mut cluster {
                 report.threads(cluster, *marker)?;
@@ -210,7 +216,7 @@ impl CounterexampleArguments {
             cluster.close();
         }
         if is_first {
-            self.ci.write("counterexample", &cases)?;
+            self.ci.write("counterexample", &cases, written.as_deref())?;
         }
         Ok(outcome)
     }

@@ -160,6 +160,14 @@ pub fn run(revision: Option<&str>) -> ExitCode {
     for remark in renamed.remarks {
         remark!("{remark}");
     }
+    let threads = match &arguments.verb {
+        Some(Verb::Check(verb)) => verb.threads,
+        Some(Verb::Counterexample(verb)) => verb.threads,
+        _ => None,
+    };
+    if let Err(failure) = use_threads(threads) {
+        return failure.report();
+    }
     let mut out = ReportOutput::new(io::stdout().lock());
     let result = match arguments.verb {
         Some(Verb::Check(verb)) => verb.run(&mut out),

@@ -103,7 +103,8 @@ impl ProofsArguments {
             report.text.flush()?;
             report.json.flush()?;
             let message = format!("{word} after {number}");
-            results.push(CiCase { name: name.to_owned(), outcome, message, file: None });
+            let file = Some(lemma.file.into());
+            results.push(CiCase { name: name.to_owned(), outcome, message, file });
             checked.push(check);
             if outcome == Outcome::Incomplete {
                 break;
@@ -124,7 +125,7 @@ impl ProofsArguments {
             }
         }
         let outcome = report.totals(&CheckTotals::new(lemmas.len(), &checked))?;
-        self.ci.write("proofs", &results)?;
+        self.ci.write("proofs", &results, None)?;
         Ok(outcome)
     }
 }

@@ -30,10 +30,11 @@ pub mod terminal;
 pub mod text;
 
 pub use outcome::{CliError, Outcome};
+use toposlam_model::enumerate::threads;
 
-/// Sets the number of threads, if one is given.
-pub fn use_threads(threads: Option<u16>) -> Result<(), CliError> {
-    let Some(threads) = threads else { return Ok(()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
+/// Sets the number of threads.
+pub fn use_threads(asked: Option<u16>) -> Result<(), CliError> {
+    let threads = asked.map_or_else(threads, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build_global().map_err(|error| CliError::at("--threads", error))
 }

@@ -17,6 +17,7 @@ macro_rules! facts {
 mod bad_input;
 mod calibrate;
 mod check;
+mod ci_report;
 mod compare;
 mod conform;
 mod containers;

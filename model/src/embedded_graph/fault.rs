@@ -23,8 +23,33 @@ pub enum GraphError {
     ClockwiseOutOfRange { dart: u32, clockwise: u32 },
     #[error("clockwise from dart {dart} is {clockwise}, as from an earlier dart")]
     ClockwiseRepeated { dart: u32, clockwise: u32 },
-    #[error("dart {dart} cannot be reached from dart 0: the world is not connected")]
+    #[error("dart {dart} cannot be reached from the first dart: the world is not connected")]
     NotConnected { dart: u32 },
+}
+
+impl GraphError {
+    /// The same error, where the first dart has this number.
+    #[must_use]
+    pub fn counted_from(self, first: u32) -> Self {
+        let counted = |dart: u32| dart.saturating_add(first);
+        match self {
+            Self::NoEdge | Self::TooManyEdges | Self::LengthsDiffer { .. } => self,
+            Self::OppositeOutOfRange { dart, opposite } => {
+                Self::OppositeOutOfRange { dart: counted(dart), opposite: counted(opposite) }
+            }
+            Self::OppositeFixed { dart } => Self::OppositeFixed { dart: counted(dart) },
+            Self::OppositeNotMutual { dart, opposite } => {
+                Self::OppositeNotMutual { dart: counted(dart), opposite: counted(opposite) }
+            }
+            Self::ClockwiseOutOfRange { dart, clockwise } => {
+                Self::ClockwiseOutOfRange { dart: counted(dart), clockwise: counted(clockwise) }
+            }
+            Self::ClockwiseRepeated { dart, clockwise } => {
+                Self::ClockwiseRepeated { dart: counted(dart), clockwise: counted(clockwise) }
+            }
+            Self::NotConnected { dart } => Self::NotConnected { dart: counted(dart) },
+        }
+    }
 }
 
 /// Why lists of names are not an embedded graph.

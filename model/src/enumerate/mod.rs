@@ -19,7 +19,7 @@ pub(crate) use answers::{Answer, Answers};
 pub use class::{Class, UnknownClass};
 pub(crate) use draft::Draft;
 pub(crate) use watch::in_parts;
-pub use watch::{Interrupted, Watch};
+pub use watch::{Interrupted, MOST_THREADS, Watch, threads};
 
 use crate::embedded_graph::EmbeddedGraph;
 use draft::{MAX_EDGES, PREFIX_EDGES, Prefix};

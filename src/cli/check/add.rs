@@ -3,7 +3,11 @@
 //! Each shard of each size must be there exactly once, and all must be of the same version, class and algorithm.
 //! A shard stops after a size with a wrong map. If later sizes of it are missing, the result ends there, too.
 
-use std::{collections::BTreeMap, io::Write, path::Path};
+use std::{
+    collections::BTreeMap,
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 use serde::Deserialize;
 use toposlam_model::{check::Shard, mapping::MappingAlgorithm};
@@ -74,7 +78,7 @@ impl CheckArguments {
             );
         }
         CiCase::add_not_checked(&mut cases, left_out.iter().map(SizeLine::name), None);
-        self.ci.write("check", &cases)?;
+        self.ci.write("check", &cases, self.shards.first().map(PathBuf::as_path))?;
         Ok(outcome)
     }
 }

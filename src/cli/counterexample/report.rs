@@ -30,6 +30,8 @@ pub(super) struct SearchReport<'o> {
     edges: usize,
     /// The number of markers. If there is one, the report on it is longer.
     markers: usize,
+    /// Whether a page shows the pair.
+    has_page: bool,
     has_head: bool,
     /// Printed after the table.
     pairs: Vec<WorldPairs>,
@@ -42,8 +44,9 @@ impl<'o> SearchReport<'o> {
         class: Class,
         edges: usize,
         markers: usize,
+        has_page: bool,
     ) -> Self {
-        Self { out, json, class, edges, markers, has_head: false, pairs: Vec::new() }
+        Self { out, json, class, edges, markers, has_page, has_head: false, pairs: Vec::new() }
     }
 
     /// Prints the result for one marker.
@@ -173,14 +176,16 @@ impl<'o> SearchReport<'o> {
         print_paragraph(self.out, &smallest)?;
         writeln!(self.out)?;
         pair.into_iter().try_for_each(|world| self.print_world(world))?;
-        let command = format!(
-            "toposlam counterexample --marker {} --class {} --max-edges {} --html walk.html",
-            marker.name(),
-            self.class,
-            self.edges
-        );
-        writeln!(self.out, "\nTo walk them in a browser:")?;
-        print_command(self.out, "  ", &command)?;
+        if !self.has_page {
+            let command = format!(
+                "toposlam counterexample --marker {} --class {} --max-edges {} --html walk.html",
+                marker.name(),
+                self.class,
+                self.edges
+            );
+            writeln!(self.out, "\nTo walk them in a browser:")?;
+            print_command(self.out, "  ", &command)?;
+        }
         if found.all { self.print_pairs(found) } else { Ok(()) }
     }
 

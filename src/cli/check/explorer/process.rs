@@ -3,6 +3,7 @@
 use std::{
     collections::VecDeque,
     io::{BufRead, BufReader, Read, Write},
+    path::Path,
     process::{Command, ExitStatus},
     str::FromStr,
     sync::{
@@ -54,6 +55,11 @@ impl FromStr for ExplorerCommand {
 }
 
 impl ExplorerCommand {
+    /// The program or the script, if it is a file that the command names.
+    pub(in crate::cli::check) fn file(&self) -> Option<&Path> {
+        self.words.iter().rev().map(Path::new).find(|path| path.is_file())
+    }
+
     pub(super) fn start(&self) -> Result<ExplorerProcess, CliError> {
         let mut words = self.words.iter();
         let program = words.next().map_or("", String::as_str);
