@@ -160,4 +160,8 @@ pub enum TruncationKind {
     Index,
     #[error("it was not closed, and its last record is malformed: {0}")]
     Malformed(&'static str),
+    #[error("it ends there, and {} more bytes follow, perhaps of another log; they are not read", grouped((*bytes).into()))]
+    Continued { bytes: u64 },
+    #[error("its index lists {listed} chunks, and it has {found}: some are missing")]
+    ChunksMissing { listed: usize, found: usize },
 }

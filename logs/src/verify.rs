@@ -8,7 +8,7 @@ use toposlam_model::enumerate::Watch;
 
 use super::{
     container::{self, Format, LogFile, PlacedRecord, Record, Section, describe},
-    error::{LogError, LogErrorKind},
+    error::{LogError, LogErrorKind, TruncationKind},
     reader::Log,
     topic::Topics,
 };
@@ -69,7 +69,10 @@ impl Verifier<'_> {
                 self.section(&section, file)?;
                 watch.part_done(1);
             }
-            if file.format == Format::Mcap && scan.truncation.is_none() {
+            let is_cut = scan.truncation.is_some_and(|(_, cause)| {
+                matches!(cause, TruncationKind::RestOfRecord | TruncationKind::End)
+            });
+            if file.format == Format::Mcap && !is_cut {
                 self.mcap_end(file, before)?;
             }
         }

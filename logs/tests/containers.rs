@@ -86,6 +86,47 @@ fn a_truncated_file_is_read_up_to_the_cut() {
 }
 
 #[test]
+fn what_follows_the_end_of_a_log_is_not_read_and_is_reported() {
+    let all = in_order(12);
+    for file in files(&[&all[..6], &all[6..]]) {
+        let (name, length) = (file.name, file.bytes.len());
+        let log = Log::of_bytes([&file.bytes[..], &file.bytes].concat()).unwrap();
+        assert_eq!(said(&log), all, "{name}");
+        let truncation = log.truncation().unwrap_or_else(|| panic!("{name}"));
+        assert_eq!(truncation.offset, length as u64, "{name}: {truncation}");
+        if file.format == Format::Mcap {
+            let cause = TruncationKind::Continued { bytes: length as u64 };
+            assert_eq!(truncation.cause, cause, "{name}");
+        }
+        let verified = log.verify(&()).unwrap();
+        assert_eq!(verified.damage.is_empty(), file.format != Format::Mcap, "{name}: {verified:?}");
+    }
+}
+
+#[test]
+fn an_index_that_lists_a_chunk_that_was_cut_out_is_reported() {
+    let all = in_order(12);
+    let way = ways().into_iter().find(|way| way.summary && way.chunked).unwrap();
+    let bytes = mcap_file(&[&all[..4], &all[4..8], &all[8..]], way);
+    assert_eq!(Log::of_bytes(bytes.clone()).unwrap().truncation(), None);
+    // The second chunk with the indices of its messages: records 6 and 7.
+    let records: Vec<(u8, usize, usize)> = std::iter::successors(Some((0, 0, 8)), |&(.., at)| {
+        let length = bytes.get(at + 1..at + 9)?.try_into().ok()?;
+        Some((bytes[at], at, at + 9 + u64::from_le_bytes(length) as usize))
+    })
+    .collect();
+    let second = records.iter().enumerate().filter(|(_, record)| record.0 == 6).nth(1).unwrap().0;
+    let indices = records[second + 1..].iter().take_while(|record| record.0 == 7);
+    let end = indices.last().unwrap().2;
+    let cut = [&bytes[..records[second].1], &bytes[end..]].concat();
+    let log = Log::of_bytes(cut).unwrap();
+    let cause = TruncationKind::ChunksMissing { listed: 3, found: 2 };
+    assert_eq!(log.truncation().unwrap().cause, cause);
+    assert_eq!(said(&log), [&all[..4], &all[8..]].concat());
+    assert!(!log.verify(&()).unwrap().damage.is_empty());
+}
+
+#[test]
 fn a_chunk_of_a_crashed_recorder_is_read() {
     // The placeholder that rosbag writes as the length of a chunk before the length is known.
     let all = in_order(8);

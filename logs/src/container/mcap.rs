@@ -19,6 +19,7 @@ const CHANNEL: u8 = 4;
 const MESSAGE: u8 = 5;
 pub(super) const CHUNK: u8 = 6;
 const MESSAGE_INDEX: u8 = 7;
+pub(super) const CHUNK_INDEX: u8 = 8;
 pub(super) const STATISTICS: u8 = 11;
 pub(super) const DATA_END: u8 = 15;
 
@@ -77,7 +78,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<FileS
     let mut scan = FileStructure::default();
     let mut window = Window::new(source);
     let mut at = MAGIC.len() as u64;
-    let mut total = None;
+    let mut index = Index::default();
     loop {
         let Some((op, content)) = record_at(&mut window, at).map_err(unreadable(at))? else {
             let cause = if at == source.length() {
@@ -89,7 +90,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<FileS
         };
         let record = at..content.end;
         let taken =
-            read_record(&mut window, op, &record, &content, &mut scan, listener, &mut total);
+            read_record(&mut window, op, &record, &content, &mut scan, listener, &mut index);
         taken.map_err(|cause| (cause, at))?;
         at = content.end;
         if op == FOOTER {
@@ -100,11 +101,19 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<FileS
     if end != Some(MAGIC) {
         return Ok(scan.truncated(at, TruncationKind::End));
     }
+    let end = at + MAGIC.len() as u64;
+    if let Some(bytes @ 1..) = source.length().checked_sub(end) {
+        return Ok(scan.truncated(end, TruncationKind::Continued { bytes }));
+    }
+    let found = scan.sections.iter().filter(|section| section.in_chunk).count();
+    if let Some((place, listed)) = index.chunks.filter(|&(_, listed)| listed > found) {
+        return Ok(scan.truncated(place, TruncationKind::ChunksMissing { listed, found }));
+    }
     scan.end_loose();
     // An incomplete index is not used.
     let counts = scan.sections.iter().filter_map(|section| section.counts.as_ref());
     let counted: u64 = counts.flat_map(BTreeMap::values).fold(0, |sum, n| sum.saturating_add(*n));
-    if total.is_some_and(|total| total != counted) {
+    if index.messages.is_some_and(|total| total != counted) {
         for section in &mut scan.sections {
             section.counts = None;
         }
@@ -121,7 +130,15 @@ pub(super) fn record_at(window: &mut Window<'_>, at: u64) -> io::Result<Option<(
     Ok(content.filter(|(_, content)| window.within(content.end)))
 }
 
-/// Reads one record; `total` becomes the number of messages by the statistics of the file.
+/// What a file has by its index.
+#[derive(Default)]
+struct Index {
+    messages: Option<u64>,
+    /// The number of chunks, and where they are listed.
+    chunks: Option<(u64, usize)>,
+}
+
+/// Reads one record.
 fn read_record(
     window: &mut Window<'_>,
     op: u8,
@@ -129,13 +146,14 @@ fn read_record(
     content: &Range<u64>,
     scan: &mut FileStructure,
     listener: &mut Listener<'_>,
-    total: &mut Option<u64>,
+    index: &mut Index,
 ) -> Result<(), LogErrorKind> {
     let most = match op {
         MESSAGE => MESSAGE_HEAD as u64,
         SCHEMA | CHANNEL => u64::MAX,
         CHUNK => 1 << 10,
         MESSAGE_INDEX => 6,
+        CHUNK_INDEX => 0,
         STATISTICS => 8,
         _ => return Ok(()),
     };
@@ -160,7 +178,8 @@ fn read_record(
                 *counts.entry(channel.into()).or_default() += u64::from(length) / 16;
             }
         }
-        _ => *total = u64_at(bytes, 0),
+        CHUNK_INDEX => index.chunks.get_or_insert((record.start, 0)).1 += 1,
+        _ => index.messages = u64_at(bytes, 0),
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use crc32fast::Hasher;
 
 use super::{
     Failure,
-    mcap::{CHUNK, DATA_END, FOOTER, MAGIC, STATISTICS, record_at},
+    mcap::{CHUNK, CHUNK_INDEX, DATA_END, FOOTER, MAGIC, STATISTICS, record_at},
     u32_at, u64_at,
 };
 use crate::{
@@ -14,7 +14,6 @@ use crate::{
     source::{Source, Window},
 };
 
-const CHUNK_INDEX: u8 = 8;
 const ATTACHMENT: u8 = 9;
 
 #[derive(Default)]
