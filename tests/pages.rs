@@ -123,6 +123,8 @@ fn a_game_with_true_claims_is_won_and_other_maps_are_judged() {
             ("right", "play worlds/figure-1b.toml --out"),
             ("right", "play worlds/building-12.toml --start west:north-west --out"),
             ("right", "play worlds/two-loops-torus.toml --out"),
+            ("right", "play worlds/k4-plane.toml --out"),
+            ("right", "play worlds/k4-torus.toml --out"),
             ("right", "play --edges 8 --seed 3 --out"),
             ("right", "play --class multigraph --edges 6 --out"),
             ("loops", &format!("play {} --out", loops.display())),

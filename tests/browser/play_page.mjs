@@ -93,6 +93,58 @@ async function assertTouchable(page) {
   assert.ok(heights.length > 3 && Math.min(...heights) >= 40, `buttons are ${heights} pixels high`);
 }
 
+/** The whole map is in its panel, and no hallway passes a place, so that its doors seem to be followed. */
+async function assertClear(page) {
+  const faults = await page.evaluate(() => {
+    const svg = document.querySelector(".drawing");
+    const panel = svg.getBoundingClientRect();
+    const discs = [...svg.querySelectorAll(".disc")].map((disc) => {
+      const { left, right, top, bottom } = disc.getBoundingClientRect();
+      return { x: (left + right) / 2, y: (top + bottom) / 2, radius: (right - left) / 2 };
+    });
+    const outside = discs.filter(
+      ({ x, y, radius }) =>
+        x - radius < panel.left || x + radius > panel.right || y - radius < panel.top || y + radius > panel.bottom,
+    );
+    const passages = [...svg.querySelectorAll("path:not([class])")].flatMap((way) => {
+      const toWindow = way.getScreenCTM();
+      const length = way.getTotalLength();
+      const points = [...Array(41).keys()].map((part) => way.getPointAtLength((part / 40) * length).matrixTransform(toWindow));
+      // It ends at two doors, on the edge of their discs.
+      return discs.filter(({ x, y, radius }) => points.some((at) => Math.hypot(at.x - x, at.y - y) < 0.9 * radius));
+    });
+    return { outside: outside.length, passages: passages.length };
+  });
+  assert.deepEqual(faults, { outside: 0, passages: 0 });
+}
+
+/** The map is enlarged around the robot, moved with the pointer, and fits again. */
+async function enlargeAndFit(page) {
+  const width = () => page.evaluate(() => document.querySelector(".drawing .disc.here").getBoundingClientRect().width);
+  const box = () => page.locator(".drawing").getAttribute("viewBox");
+  // The size of the window has just changed.
+  await page.waitForTimeout(100);
+  const [fitting, small] = [await box(), await width()];
+  await page.locator("#enlarge").click();
+  await page.keyboard.press("+");
+  assert.ok((await width()) > 1.3 * small, "a larger map has larger places");
+  const before = await box();
+  const { x, y } = await page.locator(".drawing").boundingBox();
+  await page.mouse.move(x + 60, y + 60);
+  await page.mouse.down();
+  await page.mouse.move(x + 100, y + 80);
+  await page.mouse.up();
+  const after = await box();
+  const [from, to] = [before, after].map((text) => text.split(" ").map(Number));
+  assert.ok(to[0] < from[0] && to[1] < from[1] && to[2] === from[2], `${before} moved to ${after}`);
+  await page.keyboard.press("-");
+  await page.locator("#reduce").click();
+  assert.equal(await box(), fitting);
+  await page.locator("#enlarge").click();
+  await page.locator("#fit").click();
+  assert.equal(await box(), fitting);
+}
+
 /** In the middle of a game, on a phone and in the dark. */
 async function atHalf(page, file) {
   await photograph(page, file, "half");
@@ -134,7 +186,14 @@ async function win(page, file) {
       now = await shown(page);
       assert.equal(now.status, `This place is ${known.name}, and you came in by its door ${known.index}.`);
     }
-    if (step === Math.floor(folding.length / 2)) await atHalf(page, file);
+    await assertClear(page);
+    if (step === Math.floor(folding.length / 2)) {
+      await atHalf(page, file);
+      await enlargeAndFit(page);
+      await page.setViewportSize(READER);
+      await assertClear(page);
+      await page.setViewportSize(DESK);
+    }
   }
   const before = await shown(page);
   assert.match(before.size, /no open door$/);

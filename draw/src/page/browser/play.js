@@ -222,9 +222,6 @@ function show() {
   document.body.classList.toggle("begun", doors.length > 0);
   drawing.show(map, places, nameOf, contradiction === null ? map.find(map.poses.at(-1)) : null);
   find(".map").classList.toggle("differs", contradiction !== null);
-  // A large map is scrolled.
-  const robot = find(".drawing .disc.here");
-  if (robot) reveal(find(".map .ground"), robot);
   showSize();
   showList();
   showWalk();
@@ -326,7 +323,13 @@ find("#withdraw").addEventListener("click", withdraw);
 find("#finish").addEventListener("click", finish);
 find("#restart").addEventListener("click", restart);
 
-const keys = { c: () => find("#place").focus(), w: withdraw, f: finish, r: restart };
+const enlarge = () => drawing.enlarge(ENLARGED);
+const reduce = () => drawing.enlarge(1 / ENLARGED);
+find("#enlarge").addEventListener("click", enlarge);
+find("#reduce").addEventListener("click", reduce);
+find("#fit").addEventListener("click", () => drawing.fit());
+
+const keys = { "+": enlarge, "-": reduce, c: () => find("#place").focus(), w: withdraw, f: finish, r: restart };
 onKey((event) => {
   const door = doorOfKey(event);
   const act = door === null ? keys[event.key.toLowerCase()] : () => go(Number(door));

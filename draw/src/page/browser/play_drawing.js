@@ -1,13 +1,17 @@
-// The drawing of the person's map. Each place is a disc with its doors in clockwise order; forces find places
-// for the discs and turn them towards their neighbours. The same map is always drawn alike.
+// The drawing of the person's map. Each place is a disc with its doors in clockwise order. The whole map fits its panel;
+// it can be enlarged and moved. From one map to the next, places move.
 
-const DISC = 17;
-const LENGTH = 92;
-const STUB = 24;
-const ROUNDS = 160;
-
-const polar = ({ x, y }, angle, away) => ({ x: x + away * Math.cos(angle), y: y + away * Math.sin(angle) });
-const between = (one, other) => Math.atan2(other.y - one.y, other.x - one.x);
+/** The smallest text of a place, in its units and in pixels. */
+const SMALLEST = 11;
+/** Places of a large map are drawn larger, up to this factor, so that their numbers are readable. */
+const LARGEST_PLACE = 2.2;
+/** A unit of a small map has this many pixels. */
+const MOST_PIXELS = 1.6;
+/** How long places move, in milliseconds. */
+const MOVING = 300;
+/** How much larger the map is after a press, and at most. */
+const ENLARGED = 1.5;
+const MOST_ENLARGED = 8;
 
 class MapDrawing {
   /** `onDart(number, index)` is called with the number of a place and the index of its dart. */
@@ -16,148 +20,200 @@ class MapDrawing {
     this.onDart = onDart;
     /** Where each place is: by its number. */
     this.spots = new Map();
+    this.clear();
+    new ResizeObserver(() => this.draw()).observe(svg.parentElement);
+    this.dragged = null;
+    svg.addEventListener("pointerdown", (event) => this.grab(event));
+    svg.addEventListener("pointermove", (event) => this.drag(event));
+    for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => this.drop());
+    svg.addEventListener("wheel", (event) => this.turnWheel(event), { passive: false });
   }
 
   clear() {
     this.spots.clear();
+    this.places = [];
+    this.fit();
   }
 
-  angle(place, index) {
-    return this.spots.get(place.number).turn + (index * 2 * Math.PI) / place.darts.length;
+  /** Shows the whole map. */
+  fit() {
+    this.scale = 1;
+    this.middle = null;
+    this.draw();
+  }
+
+  /** Enlarges the map around a point, or makes it smaller. */
+  enlarge(factor, around = this.middle ?? this.whole().middle) {
+    const scale = Math.min(MOST_ENLARGED, this.scale * factor);
+    if (scale <= 1) return this.fit();
+    const from = this.middle ?? this.whole().middle;
+    const kept = this.scale / scale;
+    this.middle = { x: around.x + kept * (from.x - around.x), y: around.y + kept * (from.y - around.y) };
+    this.scale = scale;
+    this.draw();
   }
 
   /** Shows the places of a folded map; `name(place)` is the text on one, `pose` the robot's dart. */
   show(map, places, name, pose) {
-    const owner = new Map(places.flatMap((place) => place.darts.map((dart, index) => [dart, { place, index }])));
-    const end = (dart) => (map.opposite(dart) === null ? null : owner.get(map.opposite(dart)));
-    this.settle(places, end);
-    const layer = () => drawn("g");
-    const [edges, discs, reaches] = [layer(), layer(), layer()];
-    const bounds = [Infinity, Infinity, -Infinity, -Infinity];
-    const include = ({ x, y }, margin) => {
-      bounds[0] = Math.min(bounds[0], x - margin);
-      bounds[1] = Math.min(bounds[1], y - margin);
-      bounds[2] = Math.max(bounds[2], x + margin);
-      bounds[3] = Math.max(bounds[3], y + margin);
+    const at = new Map(places.flatMap(({ darts }, place) => darts.map((dart, index) => [dart, [place, index]])));
+    const isFirst = (dart) => map.opposite(dart) !== null && map.opposite(dart) > dart;
+    const links = [...at.keys()].filter(isFirst).map((dart) => [at.get(dart), at.get(map.opposite(dart))]);
+    const known = places.map(({ number }) => this.spots.get(number) ?? null);
+    const spots = layOut(places.map(({ darts }) => darts.length), links, known);
+    this.spots = new Map(places.map(({ number }, place) => [number, spots[place]]));
+    // A new place comes from the one by which it was reached.
+    const reached = (place) => links.flatMap(([[a], [b]]) => (a === place ? [b] : b === place ? [a] : []));
+    const origin = (place) => known[place] ?? reached(place).map((other) => known[other]).find(Boolean) ?? spots[place];
+    const before = places.map((_, place) => ({ ...origin(place), turn: known[place]?.turn ?? spots[place].turn }));
+    this.places = places.map((place) => ({
+      number: place.number,
+      name: name(place),
+      here: place.darts.indexOf(pose),
+      marker: place.darts.indexOf(place.marker),
+      open: place.darts.map((dart) => map.opposite(dart) === null),
+    }));
+    this.links = links;
+    this.target = spots;
+    const robot = this.places.findIndex(({ here }) => here >= 0);
+    if (this.scale > 1 && robot >= 0) this.middle = spots[robot];
+    this.move(before, spots);
+  }
+
+  /** Moves the places to their spots. */
+  move(before, spots) {
+    const begin = performance.now();
+    const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches || this.places.length < 2;
+    cancelAnimationFrame(this.frame);
+    const step = (now) => {
+      const part = isStill ? 1 : Math.min(1, Math.max(0, (now - begin) / MOVING));
+      const eased = part * part * (3 - 2 * part);
+      this.shown = spots.map((spot, place) => {
+        const from = before[place];
+        const mixed = (key) => from[key] + eased * (spot[key] - from[key]);
+        return { x: mixed("x"), y: mixed("y"), turn: mixed("turn") };
+      });
+      this.draw();
+      if (part < 1) this.frame = requestAnimationFrame(step);
     };
-    for (const place of places) {
-      const spot = this.spots.get(place.number);
-      include(spot, DISC + STUB + 10);
-      const here = place.darts.indexOf(pose);
-      discs.append(drawn("circle", { class: here >= 0 ? "disc here" : "disc", cx: spot.x, cy: spot.y, r: DISC }));
-      discs.append(drawn("text", { class: "name", x: spot.x, y: spot.y + 5, "font-size": 14 }, name(place)));
-      for (const [index, dart] of place.darts.entries()) {
-        const angle = this.angle(place, index);
-        const other = end(dart);
-        if (other === null) this.drawStub(edges, spot, angle);
-        else if (map.opposite(dart) > dart) this.drawEdge(edges, [place, index], [other.place, other.index], include);
-        const knob = polar(spot, angle, DISC);
-        const marked = place.marker === dart;
-        discs.append(drawn("circle", { class: marked ? "knob marker" : "knob", cx: knob.x, cy: knob.y, r: marked ? 6 : 3 }));
-        if (index === here) discs.append(this.robot(spot, angle));
-        const label = polar(spot, angle + 0.46, DISC + 11);
-        discs.append(drawn("text", { class: "index", x: label.x, y: label.y + 4, "font-size": 11 }, String(index)));
-        const reach = polar(spot, angle, DISC + 8);
-        const target = drawn("circle", { class: "reach", cx: reach.x, cy: reach.y, r: 15 });
-        target.addEventListener("click", () => this.onDart(place.number, index));
-        reaches.append(target);
-      }
+    step(begin);
+  }
+
+  /** The box around the map as it will be, and how large its places are drawn so that they are readable. */
+  whole() {
+    const panel = this.svg.getBoundingClientRect();
+    const size = (places) => {
+      const margin = places * (DISC + STUB + 4);
+      const boxes = [
+        ...this.target.map(({ x, y }) => ({ left: x - margin, right: x + margin, top: y - margin, bottom: y + margin })),
+        ...this.links.map((link) => new Way(this.curve(this.target, link, places), 6)),
+      ];
+      const [left, top] = ["left", "top"].map((side) => Math.min(...boxes.map((box) => box[side])));
+      const [right, bottom] = ["right", "bottom"].map((side) => Math.max(...boxes.map((box) => box[side])));
+      // A small map is not enlarged more.
+      const [width, height] = [Math.max(right - left, panel.width / MOST_PIXELS), Math.max(bottom - top, panel.height / MOST_PIXELS)];
+      const pixels = Math.min(panel.width / width, panel.height / height);
+      return { middle: { x: (left + right) / 2, y: (top + bottom) / 2 }, width, height, pixels };
+    };
+    const { pixels } = size(1);
+    const places = Math.min(LARGEST_PLACE, Math.max(1, 1 / (pixels || 1)));
+    return { ...size(places), places };
+  }
+
+  curve(spots, [[a, i], [b, j]], places) {
+    const end = (place, index) => [spots[place], index, this.places[place].open.length];
+    return hallwayCurve(end(a, i), end(b, j), places * DISC);
+  }
+
+  draw() {
+    if (this.places.length === 0) return;
+    const { width, height, middle, places } = this.whole();
+    const { x, y } = this.middle ?? middle;
+    const size = places / Math.sqrt(this.scale);
+    const box = [x - width / this.scale / 2, y - height / this.scale / 2, width / this.scale, height / this.scale];
+    this.svg.setAttribute("viewBox", box.map((n) => n.toFixed(1)).join(" "));
+    this.svg.classList.toggle("enlarged", this.scale > 1);
+    const edges = this.links.map((link) => {
+      const [from, p, q, to] = this.curve(this.shown, link, size).map((at) => `${at.x.toFixed(1)} ${at.y.toFixed(1)}`);
+      return drawn("path", { d: `M${from}C${p} ${q} ${to}` });
+    });
+    const discs = this.places.map((place, index) => this.disc(place, this.shown[index], size));
+    const robots = this.places.flatMap((place, index) => (place.here < 0 ? [] : [this.robot(place, this.shown[index], size)]));
+    const reaches = this.places.flatMap((place, index) => this.reaches(place, this.shown[index], size));
+    this.svg.replaceChildren(...[edges, discs, robots, reaches].map((layer) => drawn("g", {}, ...layer)));
+  }
+
+  /** A place around the origin, enlarged. */
+  group(spot, size, parts) {
+    const place = `translate(${spot.x.toFixed(1)} ${spot.y.toFixed(1)}) scale(${size.toFixed(3)})`;
+    return drawn("g", { transform: place }, ...parts);
+  }
+
+  disc({ name, here, marker, open }, spot, size) {
+    const center = { x: 0, y: 0 };
+    const parts = [
+      drawn("circle", { class: here >= 0 ? "disc here" : "disc", r: DISC }),
+      drawn("text", { class: "name", y: 5, "font-size": 14 }, name),
+    ];
+    for (const [index, isOpen] of open.entries()) {
+      const angle = doorAngle(spot, index, open.length);
+      const [knob, end, label] = [polar(center, angle, DISC), polar(center, angle, DISC + STUB), polar(center, angle + 0.46, DISC + 11)];
+      if (isOpen) parts.push(drawn("path", { class: "open", d: `M${knob.x} ${knob.y}L${end.x} ${end.y}` }));
+      const isMarked = marker === index;
+      parts.push(drawn("circle", { class: isMarked ? "knob marker" : "knob", cx: knob.x, cy: knob.y, r: isMarked ? 6 : 3 }));
+      parts.push(drawn("text", { class: "index", x: label.x, y: label.y + 4, "font-size": SMALLEST }, String(index)));
     }
-    const [left, top, right, bottom] = bounds;
-    this.svg.setAttribute("viewBox", [left, top, right - left, bottom - top].map((n) => n.toFixed(1)).join(" "));
-    this.svg.replaceChildren(edges, discs, reaches);
-    keepReadable(this.svg, 11);
-    this.svg.style.setProperty("--natural", `${1.6 * (right - left)}px`);
-  }
-
-  drawStub(edges, spot, angle) {
-    const [from, to] = [polar(spot, angle, DISC), polar(spot, angle, DISC + STUB)];
-    edges.append(drawn("path", { class: "open", d: `M${from.x} ${from.y}L${to.x} ${to.y}` }));
-  }
-
-  /** A curve that leaves straight through both doors. */
-  drawEdge(edges, [one, i], [other, j], include) {
-    const [a, b] = [this.spots.get(one.number), this.spots.get(other.number)];
-    const [out, into] = [this.angle(one, i), this.angle(other, j)];
-    const [from, to] = [polar(a, out, DISC), polar(b, into, DISC)];
-    const gap = Math.min(Math.abs(i - j), one.darts.length - Math.abs(i - j));
-    const loop = 34 + 26 * gap;
-    const far = one === other ? loop : Math.max(22, 0.42 * Math.hypot(to.x - from.x, to.y - from.y));
-    const [p, q] = [polar(from, out, far), polar(to, into, far)];
-    // A curve stays between its controls.
-    for (const control of [p, q]) include(polar(control, between(control, a), 0.25 * far), 4);
-    edges.append(drawn("path", { d: `M${from.x} ${from.y}C${p.x} ${p.y} ${q.x} ${q.y} ${to.x} ${to.y}` }));
+    return this.group(spot, size, parts);
   }
 
   /** The robot, in the door by which it came in. */
-  robot(spot, angle) {
-    const at = polar(spot, angle, DISC + 11);
+  robot({ here, open }, spot, size) {
+    const angle = doorAngle(spot, here, open.length);
+    const at = polar({ x: 0, y: 0 }, angle, DISC + 11);
     const corner = (turn, away) => {
       const { x, y } = polar(at, angle + turn, away);
       return `${x.toFixed(1)} ${y.toFixed(1)}`;
     };
-    return drawn("path", { class: "robot", d: `M${corner(Math.PI, 9)}L${corner(0.8, 9)}L${corner(-0.8, 9)}Z` });
+    const shape = `M${corner(Math.PI, 9)}L${corner(0.8, 9)}L${corner(-0.8, 9)}Z`;
+    return this.group(spot, size, [drawn("path", { class: "robot", d: shape })]);
   }
 
-  /** Finds a spot for each place, beginning with those of the map before. */
-  settle(places, end) {
-    for (const place of places) {
-      if (this.spots.has(place.number)) continue;
-      const links = place.darts.map((dart, index) => ({ index, far: end(dart) }));
-      const from = links.find(({ far }) => far !== null && this.spots.has(far.place.number));
-      if (from === undefined) {
-        // The robot comes from below.
-        this.spots.set(place.number, { x: 0, y: 0, turn: Math.PI / 2 });
-        continue;
-      }
-      const way = this.angle(from.far.place, from.far.index);
-      const spot = polar(this.spots.get(from.far.place.number), way, LENGTH);
-      const turn = way + Math.PI - (from.index * 2 * Math.PI) / place.darts.length;
-      this.spots.set(place.number, { ...spot, turn });
-    }
-    const shown = new Set(places.map(({ number }) => number));
-    for (const number of this.spots.keys()) if (!shown.has(number)) this.spots.delete(number);
-    for (let round = 0; round < ROUNDS; round += 1) this.relax(places, end, 1 - round / ROUNDS);
+  /** Where doors can be pressed. */
+  reaches({ number, open }, spot, size) {
+    const parts = open.map((_, index) => {
+      const at = polar({ x: 0, y: 0 }, doorAngle(spot, index, open.length), DISC + 8);
+      const target = drawn("circle", { class: "reach", cx: at.x, cy: at.y, r: 15 });
+      target.addEventListener("click", () => this.onDart(number, index));
+      return target;
+    });
+    return [this.group(spot, size, parts)];
   }
 
-  relax(places, end, heat) {
-    const spots = places.map(({ number }) => this.spots.get(number));
-    const pushes = spots.map(() => ({ x: 0, y: 0, turn: 0, links: 0 }));
-    const at = new Map(places.map(({ number }, index) => [number, index]));
-    for (const [a, one] of spots.entries()) {
-      for (let b = a + 1; b < spots.length; b += 1) {
-        const other = spots[b];
-        const far = Math.max(8, Math.hypot(other.x - one.x, other.y - one.y));
-        const push = Math.min(30, (1.2 * LENGTH * LENGTH) / (far * far) * 4);
-        const way = far > 8 ? between(one, other) : a + b;
-        pushes[a].x -= push * Math.cos(way);
-        pushes[a].y -= push * Math.sin(way);
-        pushes[b].x += push * Math.cos(way);
-        pushes[b].y += push * Math.sin(way);
-      }
-    }
-    for (const [a, place] of places.entries()) {
-      for (const [index, dart] of place.darts.entries()) {
-        const far = end(dart);
-        if (far === null || far.place === place) continue;
-        const b = at.get(far.place.number);
-        const angle = this.angle(place, index);
-        const wish = polar(spots[a], angle, LENGTH);
-        // The neighbour is drawn before this door, and the door turned to the neighbour.
-        pushes[b].x += 0.16 * (wish.x - spots[b].x);
-        pushes[b].y += 0.16 * (wish.y - spots[b].y);
-        pushes[a].x -= 0.16 * (wish.x - spots[b].x);
-        pushes[a].y -= 0.16 * (wish.y - spots[b].y);
-        pushes[a].turn += Math.sin(between(spots[a], spots[b]) - angle);
-        pushes[a].links += 1;
-      }
-    }
-    for (const [index, spot] of spots.entries()) {
-      const { x, y, turn, links } = pushes[index];
-      const size = Math.max(1, Math.hypot(x, y) / 14);
-      spot.x += (heat * x) / size;
-      spot.y += (heat * y) / size;
-      if (links > 0) spot.turn += (0.5 * heat * turn) / links;
-    }
+  // The pointer.
+
+  /** A point of the window on the map. */
+  pointed({ clientX, clientY }) {
+    return new DOMPoint(clientX, clientY).matrixTransform(this.svg.getScreenCTM().inverse());
+  }
+
+  grab(event) {
+    if (this.scale > 1) this.dragged = this.pointed(event);
+  }
+
+  drag(event) {
+    if (this.dragged === null) return;
+    const at = this.pointed(event);
+    this.middle = { x: this.middle.x + this.dragged.x - at.x, y: this.middle.y + this.dragged.y - at.y };
+    this.draw();
+  }
+
+  drop() {
+    this.dragged = null;
+  }
+
+  /** With the control key, as browsers do, or where the map is enlarged. */
+  turnWheel(event) {
+    if (!event.ctrlKey && this.scale === 1) return;
+    event.preventDefault();
+    this.enlarge(event.deltaY < 0 ? ENLARGED : 1 / ENLARGED, this.pointed(event));
   }
 }

@@ -15,11 +15,12 @@ use crate::picture::{WorldPicture, escaped, svg};
 
 const PAGE: &str = include_str!("../browser/play.html");
 /// In the order of their dependencies; they share one scope.
-const SCRIPT: [&str; 7] = [
+const SCRIPT: [&str; 8] = [
     PAGE_SCRIPT,
     include_str!("../browser/percepts.js"),
     include_str!("../browser/play_map.js"),
     include_str!("../browser/play_judge.js"),
+    include_str!("../browser/play_layout.js"),
     include_str!("../browser/play_drawing.js"),
     include_str!("../browser/play_here.js"),
     include_str!("../browser/play.js"),
