@@ -76,7 +76,7 @@ def wrong_sometimes(robot):
 
 
 def test_shards_together_are_the_whole_check_in_any_order():
-    whole = ts.check(wrong_sometimes, edges=[3, 4])
+    whole = ts.check(wrong_sometimes, edges=[3, 4], keep_going=True)
     shards = [ts.check_shard(s, wrong_sometimes, edges=[3, 4]) for s in ts.shards(5)]
     assert shards[0].verdict in ("not known", "violated")
     random.Random(1).shuffle(shards)
@@ -102,6 +102,43 @@ def test_shards_together_are_the_whole_check_in_any_order():
         ts.merge([*right[:2], other_version])
     with pytest.raises(errors.ShardError):
         ts.merge([])
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_larger_worlds_are_not_checked_after_one_that_failed(processes):
+    short = ts.check(wrong_sometimes, edges=[1, 2, 3, 4], processes=processes)
+    whole = ts.check(wrong_sometimes, edges=[1, 2, 3, 4], processes=processes, keep_going=True)
+    assert [size.edges for size in whole.sizes] == [1, 2, 3, 4]
+    failing = [size.starts - size.mapped > 0 for size in whole.sizes]
+    assert short.sizes == whole.sizes[: failing.index(True) + 1]
+    assert len(short.sizes) < 4 and short.verdict == whole.verdict == "violated"
+    numbers = [(failure.world.edge_count, failure.number) for failure in whole.failures]
+    assert [(failure.world.edge_count, failure.number) for failure in short.failures] == [
+        (edges, number) for edges, number in numbers if edges <= len(short.sizes)
+    ]
+
+
+def test_a_check_ends_after_so_many_failures():
+    for wanted in [1, 3, 60]:
+        report = ts.check(wrong_sometimes, edges=[3, 4], keep_going=True, stop_after=wanted)
+        assert report.failed == len(report.failures) == wanted
+        assert report.verdict == "violated"
+    with pytest.raises(errors.UnusedOptionError, match="stop_after has no effect with several processes"):
+        ts.check(wrong_sometimes, edges=3, stop_after=1, processes=2)
+    with pytest.raises(errors.SizeError, match="stop_after is a number from 1"):
+        ts.check(wrong_sometimes, edges=3, stop_after=0)
+
+
+def test_an_explorer_that_takes_too_long_is_shown_where_it_was():
+    def spin(robot):
+        while True:
+            pass
+
+    report = ts.check(spin, edges=[2, 3], seconds=0.2)
+    (limit,) = report.limits
+    assert (report.starts, report.verdict) == (1, "not known")
+    line = spin.__code__.co_firstlineno
+    assert re.search(rf"more than 0\.2 s \(in spin, line ({line + 1}|{line + 2})\)", str(limit.error))
 
 
 def test_a_failure_is_drawn_and_can_be_repeated():

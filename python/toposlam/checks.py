@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import Union
@@ -18,6 +19,7 @@ from .errors import (
     ExplorerError,
     LimitError,
     NotPicklableError,
+    OutOfTimeError,
     ShardError,
     SizeError,
     UnknownClassError,
@@ -25,7 +27,7 @@ from .errors import (
     WorkerLostError,
 )
 from .explorers import Clock, Explorer, check_explorer, judged
-from .limits import MAX_MOVES, SECONDS, check_limit, check_run_limits
+from .limits import MAX_MOVES, SECONDS, check_limit, check_run_limits, check_unused
 from .markers import MARKERS
 from .progress import Advance, bar
 from .worlds import Picture, World
@@ -210,6 +212,12 @@ class CheckReport:
         limits = first(limit for report in reports for limit in report.limits)
         return replace(self, sizes=tuple(sizes.values()), failures=failures, limits=limits, shards=shards)
 
+    def _with_larger(self, other: CheckReport) -> CheckReport:
+        """The report with that of larger worlds."""
+        kept = self.max_failures
+        failures, limits = (self.failures + other.failures)[:kept], (self.limits + other.limits)[:kept]
+        return replace(self, sizes=self.sizes + other.sizes, failures=failures, limits=limits)
+
     def _head(self) -> tuple[object, ...]:
         """What is the same in all shards of a check."""
         limits = (self.max_failures, self.max_moves, self.seconds)
@@ -239,6 +247,8 @@ class _Question:
     max_moves: int
     seconds: float
     max_failures: int
+    stop_after: int | None = None
+    keep_going: bool = True
 
     @property
     def name(self) -> str:
@@ -306,6 +316,10 @@ def _checked(question: _Question, index: int, of: int, advance: Advance | None) 
     )
 
 
+class _EnoughError(Exception):
+    """As many starts as are wanted failed, or reached a limit."""
+
+
 def _size(
     question: _Question,
     edges: int,
@@ -340,8 +354,12 @@ def _size(
         if advance is not None and starts - shown == 256:
             advance(starts - shown)
             shown = starts
+        is_stuck = isinstance(error, OutOfTimeError) and not question.keep_going
+        if is_stuck or (question.stop_after is not None and starts - mapped >= question.stop_after):
+            raise _EnoughError
 
-    _core.visit_starts(question.cls, edges, *shard, visit)
+    with suppress(_EnoughError):
+        _core.visit_starts(question.cls, edges, *shard, visit)
     if advance is not None:
         advance(starts - shown)
     return SizeReport(edges, starts, mapped, unknown, total, most, certificates)
@@ -364,10 +382,16 @@ def check(
     max_moves: int = MAX_MOVES,
     seconds: float = SECONDS,
     max_failures: int = 100,
+    stop_after: int | None = None,
+    keep_going: bool = False,
     processes: int = 1,
     progress: bool | None = None,
 ) -> CheckReport:
     """Checks an explorer on every start of every world with `edges` edges: a number, or several.
+
+    After a number of edges with a start that failed or reached a limit, worlds with more edges are not
+    checked, and after a start that took too long nothing more, unless `keep_going`. With `stop_after`, the
+    check ends after so many starts that failed or reached a limit.
 
     `cls` is the class of the worlds, one of `CLASSES`, and `marker` the kind of the robot's marker, one of
     `MARKERS`. A map is right if it is isomorphic to the world, start to start, and the robot is where the
@@ -381,13 +405,14 @@ def check(
     it, on a terminal and in a notebook.
 
     Raises `NotAnExplorerError`, `SizeError`, `UnknownClassError` or `UnknownMarkerError` for arguments that
-    cannot be; with several processes also `NotPicklableError`, and `WorkerLostError` if one of them ends.
+    cannot be; with several processes also `NotPicklableError`, `WorkerLostError` if one of them ends, and
+    `UnusedOptionError` for `stop_after`.
 
     >>> import toposlam as ts
     >>> def there(robot):
     ...     robot.go(0)
     ...     return {0: [1], 1: [0]}, (1, 0)
-    >>> report = ts.check(there, edges=[1, 2], cls="simple")
+    >>> report = ts.check(there, edges=[1, 2, 3], cls="simple")
     >>> report.verdict, report.mapped, report.starts
     ('violated', 1, 3)
     >>> print(report.failures[0])
@@ -395,20 +420,34 @@ def check(
     """
     question = _question(explorer, edges, cls, marker, max_moves, seconds, max_failures)
     check_limit("processes", processes)
+    if stop_after is not None:
+        check_limit("stop_after", stop_after)
+    if processes > 1:
+        check_unused("with several processes", stop_after=stop_after)
+        _check_picklable(question)
+    report, failed = None, 0
     with bar("checking", "starts", progress, question.total) as advance:
-        if processes == 1:
-            report = _checked(question, 0, 1, advance)
-        else:
-            report = _in_processes(question, processes, advance)
+        for size in question.edges:
+            left = None if stop_after is None else stop_after - failed
+            one = replace(question, edges=(size,), stop_after=left, keep_going=keep_going)
+            found = _checked(one, 0, 1, advance) if processes == 1 else _in_processes(one, processes, advance)
+            report = found if report is None else report._with_larger(found)
+            failed = report.starts - report.mapped
+            if (failed and not keep_going) or (stop_after is not None and failed >= stop_after):
+                break
+    assert report is not None  # there is a size
     return report
 
 
-def _in_processes(question: _Question, processes: int, advance: Advance | None) -> CheckReport:
+def _check_picklable(question: _Question) -> None:
     try:
         pickle.dumps(question.explorer)
     except Exception as cause:
         text = f"{question.name} cannot be sent to another process; define it at the top of a module"
         raise NotPicklableError(f"{text} ({cause})") from cause
+
+
+def _in_processes(question: _Question, processes: int, advance: Advance | None) -> CheckReport:
     # A forked process has the functions of a notebook. Others import them.
     fork = sys.platform == "linux"
     context = multiprocessing.get_context("fork") if fork else multiprocessing.get_context()

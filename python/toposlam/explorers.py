@@ -123,8 +123,8 @@ def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Cl
         wrong = None if robot.refusal is not None else judge(answer, start, robot)
     except InternalError:
         raise
-    except _TimeIsUp:
-        wrong = OutOfTimeError(f"it took more than {clock.seconds:g} s")
+    except _TimeIsUp as cause:
+        wrong = OutOfTimeError(f"it took more than {clock.seconds:g} s{_line(cause)}")
     except (Exception, SystemExit, GeneratorExit) as cause:
         wrong = _raised(cause)
     return wrong if robot.refusal is None else robot.refusal

@@ -9,8 +9,10 @@ use serde_json::Value;
 use super::Scratch;
 use crate::repository;
 
-/// Each command, its exit code, and the kind and the place of its results.
-const REPORTS: &[(&str, i32, &[(&str, &str)])] = &[
+/// A command, its exit code, and the kind and the place of its results.
+type Reported = (&'static str, i32, &'static [(&'static str, &'static str)]);
+
+const REPORTS: &[Reported] = &[
     ("check --edges 1..=2", 0, &[]),
     (
         "check --edges 1..=3 --explorer 'sh always.sh'",
