@@ -32,6 +32,8 @@ pub(crate) struct Robot {
     /// The first action that was not possible. In a check it ends the run.
     refusal: Option<PyErr>,
     ends_at_refusal: bool,
+    /// Whether its run has ended. Then it does nothing more.
+    is_ended: bool,
 }
 
 impl Robot {
@@ -54,6 +56,7 @@ impl Robot {
             actions: Vec::new(),
             refusal: None,
             ends_at_refusal: false,
+            is_ended: false,
         }
     }
 
@@ -83,6 +86,10 @@ impl Robot {
         py: Python<'_>,
         act: impl FnOnce(&mut Self) -> PyResult<R>,
     ) -> PyResult<R> {
+        if self.is_ended {
+            let text = "a robot of an earlier run was kept; each run has a robot of its own";
+            return Err(error(py, "EndedRunError", text));
+        }
         if let Some(refusal) = self.refusal.as_ref().filter(|_| self.ends_at_refusal) {
             return Err(refusal.clone_ref(py));
         }
@@ -172,6 +179,11 @@ impl Robot {
     /// Drops the marker here.
     fn drop(&mut self, py: Python<'_>) -> PyResult<()> {
         self.attempt(py, |robot| robot.act(py, Action::Drop))
+    }
+
+    /// Ends its run.
+    fn end_run(&mut self) {
+        self.is_ended = true;
     }
 
     fn __repr__(&self) -> String {

@@ -350,6 +350,33 @@ def test_every_mistake_has_an_error_of_its_own_with_start_and_step(explorer, kin
         ts.explore(ts.World({0: [1], 1: [0]}), algorithm=explorer)
 
 
+def test_a_robot_of_an_earlier_run_does_nothing():
+    kept = []
+
+    def explorer(robot):
+        kept.append(robot)
+        kept[0].go(0)
+        return {0: [1], 1: [0]}, (1, 0)
+
+    report = ts.check(explorer, edges=[1, 2], cls="simple")
+    (first, *_) = report.failures
+    assert report.mapped == 1 and type(first.error) is errors.EndedRunError
+    assert "robot of an earlier run was kept" in str(first.error)
+
+
+def test_an_explorer_is_not_async():
+    async def explorer(robot):
+        return {0: [1], 1: [0]}, (1, 0)
+
+    class Explorer:
+        async def __call__(self, robot):
+            return {0: [1], 1: [0]}, (1, 0)
+
+    for wrong in [explorer, Explorer()]:
+        with pytest.raises(errors.NotAnExplorerError, match="not `async`"):
+            ts.check(wrong, edges=1)
+
+
 def test_generators_fail_like_functions():
     def seven(robot):
         yield 7

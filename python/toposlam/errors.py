@@ -186,6 +186,10 @@ class OutOfTimeError(LimitError):
     """An explorer took more time than is allowed."""
 
 
+class EndedRunError(ExplorerError):
+    """An explorer moved a robot of a run that has ended."""
+
+
 class RaisedError(ExplorerError):
     """An explorer raised an exception. That is the `__cause__`, unless the error comes from another
     process."""

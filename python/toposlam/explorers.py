@@ -7,6 +7,7 @@ a map and the robot's pose in it, a dart `(vertex, index)` of the map. It may al
 
 from __future__ import annotations
 
+import inspect
 import threading
 import time
 from collections.abc import Generator
@@ -16,6 +17,7 @@ from typing import Any, Callable, Union
 from . import _core
 from .errors import (
     AnswerError,
+    EndedRunError,
     ExplorerError,
     GuessedError,
     InternalError,
@@ -111,6 +113,8 @@ def check_explorer(explorer: object) -> None:
     if not callable(explorer):
         kind = type(explorer).__name__
         raise NotAnExplorerError(f"an explorer is a function of a robot, not a value of type {kind}")
+    if any(map(inspect.iscoroutinefunction, [explorer, type(explorer).__call__])):
+        raise NotAnExplorerError("an explorer is not `async`: nothing awaits it; begin it with `def`")
 
 
 def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Clock) -> ExplorerError | None:
@@ -123,10 +127,14 @@ def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Cl
         wrong = None if robot.refusal is not None else judge(answer, start, robot)
     except InternalError:
         raise
+    except EndedRunError as cause:
+        wrong = cause
     except _TimeIsUp as cause:
         wrong = OutOfTimeError(f"it took more than {clock.seconds:g} s{_line(cause)}")
     except (Exception, SystemExit, GeneratorExit) as cause:
         wrong = _raised(cause)
+    finally:
+        robot.end_run()
     return wrong if robot.refusal is None else robot.refusal
 
 

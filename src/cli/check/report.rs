@@ -185,8 +185,10 @@ impl<'o> CheckReport<'o> {
             FailedRun::Explorer { message, last_actions, stderr } => {
                 let it = message.strip_prefix("The explorer ").unwrap_or(message);
                 let moves = counted(moves.unwrap_or_default() as usize, "move");
+                let end = if it.ends_with('?') { "" } else { "." };
+                let stopped = it.strip_suffix(&format!(" after {moves}")).unwrap_or(it);
                 let text = format!(
-                    "The first start on which the explorer {what}. After {moves}, it {it}."
+                    "The first start on which the explorer {what}. After {moves}, it {stopped}{end}"
                 );
                 print_paragraph(self.out, &text)?;
                 if !last_actions.is_empty() {

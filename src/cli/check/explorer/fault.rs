@@ -14,8 +14,11 @@ pub(super) enum ExplorerFault {
     NotAnAnswer { line: String, cause: String },
     #[error("wrote a line of more than {limit} bytes")]
     LineTooLong { limit: u64 },
-    #[error("wrote more than one line for one percept")]
-    ExtraLine,
+    #[error(
+        "wrote more than one line for one percept; the second begins with `{line}`. Other output belongs on \
+         standard error, which is not read as an answer"
+    )]
+    ExtraLine { line: String },
     /// The process ended, or closed its standard output.
     #[error("{}", match status {
         Some(status) => format!("ended with {status}"),
@@ -43,9 +46,12 @@ pub(super) enum ExplorerFault {
          same walk, and returns the same map", counted(*moves as usize, "move")
     )]
     Guessed { moves: u64 },
-    #[error("did not read a percept and answer it within {seconds} s")]
+    #[error(
+        "did not read a percept and answer it within {seconds} s; does it write a line for each percept, and flush \
+         its output?"
+    )]
     TimedOut { seconds: f64 },
-    #[error("did not end within {}", counted(*limit as usize, "move"))]
+    #[error("was stopped after {}", counted(*limit as usize, "move"))]
     OutOfMoves { limit: u64 },
 }
 
@@ -73,7 +79,7 @@ impl ExplorerFault {
             Self::NotJson { .. } => "not-json",
             Self::NotAnAnswer { .. } => "not-an-answer",
             Self::LineTooLong { .. } => "line-too-long",
-            Self::ExtraLine => "extra-line",
+            Self::ExtraLine { .. } => "extra-line",
             Self::Ended { failed: true, .. } => "crashed",
             Self::Ended { .. } => "ended",
             Self::RefusedAction { refused } => match refused {

@@ -14,7 +14,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::fault::ExplorerFault;
+use super::{fault::ExplorerFault, protocol::shortened};
 use crate::cli::{
     CliError,
     children::{ProgramStreams, RunningProgram},
@@ -163,7 +163,11 @@ fn converse(
         let mut line = Vec::new();
         let read = stdout.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line);
         let answer = match (read, line.last()) {
-            (Ok(_), Some(b'\n')) if !stdout.buffer().is_empty() => Err(ExplorerFault::ExtraLine),
+            (Ok(_), Some(b'\n')) if !stdout.buffer().is_empty() => {
+                let rest = String::from_utf8_lossy(stdout.buffer());
+                let line = rest.lines().next().unwrap_or_default();
+                Err(ExplorerFault::ExtraLine { line: shortened(line.trim()) })
+            }
             (Ok(_), Some(b'\n')) => {
                 line.pop();
                 Ok(line)

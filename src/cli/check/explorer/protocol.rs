@@ -93,7 +93,7 @@ fn part<T: DeserializeOwned>(value: &Value, what: &str) -> Result<T, String> {
     serde_json::from_value(value.clone()).map_err(refused)
 }
 
-fn shortened(text: &str) -> String {
+pub(super) fn shortened(text: &str) -> String {
     let plain = |letter: char| if letter.is_control() { '\u{fffd}' } else { letter };
     let mut letters = text.chars().map(plain);
     let beginning: String = letters.by_ref().take(SHOWN).collect();
