@@ -140,6 +140,14 @@ def test_an_explorer_that_takes_too_long_is_shown_where_it_was():
     line = spin.__code__.co_firstlineno
     assert re.search(rf"more than 0\.2 s \(in spin, line ({line + 1}|{line + 2})\)", str(limit.error))
 
+    # Most of the time of this one is spent in the package.
+    def around(robot):
+        while True:
+            yield 0
+
+    (limit,) = ts.check(around, edges=1, cls="simple", seconds=0.2, max_moves=10**9).limits
+    assert re.search(r"more than 0\.2 s( \(in around, line \d+\))?$", str(limit.error))
+
 
 def test_a_failure_is_drawn_and_can_be_repeated():
     report = ts.check(wrong_sometimes, edges=[2, 3])

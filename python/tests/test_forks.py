@@ -8,7 +8,7 @@ from test_logs import recorded
 import toposlam as ts
 
 if "fork" not in multiprocessing.get_all_start_methods():
-    pytest.skip("there is no fork", allow_module_level=True)
+    pytest.skip("the start method fork is missing on this system", allow_module_level=True)
 
 
 def a():

@@ -401,7 +401,8 @@ def check(
 
     After `max_moves` moves, pick-ups and drops, or `seconds` seconds for a start (`math.inf` is no limit),
     its result is not known. The report keeps the first `max_failures` failures, and as many starts that
-    reached a limit. With several `processes` the report is the same. `progress` shows a bar or not; without
+    reached a limit. With several `processes` the report is the same, unless a start takes too long: then each
+    process ends by itself. `progress` shows a bar or not; without
     it, on a terminal and in a notebook.
 
     Raises `NotAnExplorerError`, `SizeError`, `UnknownClassError` or `UnknownMarkerError` for arguments that

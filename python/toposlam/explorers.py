@@ -145,13 +145,13 @@ def _raised(cause: BaseException) -> RaisedError:
 
 
 def _line(cause: BaseException) -> str:
-    trace = cause.__traceback__
-    while trace is not None and trace.tb_next is not None:
+    """The line of the explorer where an exception was raised, in brackets."""
+    trace, text = cause.__traceback__, ""
+    while trace is not None:
+        if trace.tb_frame.f_globals.get("__package__") != __package__:
+            text = f" (in {trace.tb_frame.f_code.co_name}, line {trace.tb_lineno})"
         trace = trace.tb_next
-    if trace is None:
-        return ""
-    code = trace.tb_frame.f_code
-    return f" (in {code.co_name}, line {trace.tb_lineno})"
+    return text
 
 
 def judge(answer: Answer, start: _core.Start, robot: _core.Robot) -> ExplorerError | None:

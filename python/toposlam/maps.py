@@ -71,7 +71,8 @@ def ordered(value: object) -> list[Any] | None:
     if isinstance(value, (str, bytes, bytearray, Mapping)) or not hasattr(value, "__getitem__"):
         return None
     try:
-        return list(value) if len(value) >= 0 else None  # type: ignore[arg-type, call-overload]
+        len(value)  # type: ignore[arg-type]
+        return list(value)  # type: ignore[call-overload, no-any-return]
     except TypeError:
         return None
 

@@ -450,7 +450,7 @@ def _rebuilt(text: str, name: str, vertices: dict[Hashable, str]) -> World:
 
 def _names(vertices: list[Hashable]) -> dict[Hashable, str]:
     """The names of the vertices: their texts, with `_` for letters that no name in a world file has. Warns of
-    texts that are changed; a number tells apart those that would be equal."""
+    texts that are changed. Of names that would be equal, all but the first get a number."""
     texts = [str(vertex) for vertex in vertices]
     if len(set(texts)) < len(texts):
         twice = next(text for text in texts if texts.count(text) > 1)

@@ -200,6 +200,8 @@ class MapDrawing {
   }
 
   drag(event) {
+    // The button may have been released elsewhere.
+    if (event.buttons === 0) this.drop();
     if (this.dragged === null) return;
     const at = this.pointed(event);
     this.middle = { x: this.middle.x + this.dragged.x - at.x, y: this.middle.y + this.dragged.y - at.y };

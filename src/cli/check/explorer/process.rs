@@ -55,9 +55,10 @@ impl FromStr for ExplorerCommand {
 }
 
 impl ExplorerCommand {
-    /// The program or the script, if it is a file that the command names.
+    /// The explorer's file: the first file that the command names by a relative path. An interpreter has an absolute path,
+    /// or is found by its name.
     pub(in crate::cli::check) fn file(&self) -> Option<&Path> {
-        self.words.iter().rev().map(Path::new).find(|path| path.is_file())
+        self.words.iter().map(Path::new).find(|path| path.is_relative() && path.is_file())
     }
 
     pub(super) fn start(&self) -> Result<ExplorerProcess, CliError> {
