@@ -10,4 +10,4 @@ extern crate toposlam_terminal;
 mod cli;
 
 pub use cli::{command, run};
-use toposlam_draw::{page, picture, run_page_data, story};
+use toposlam_draw::{explorer_run, page, picture, run_page_data, story};

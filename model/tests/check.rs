@@ -70,7 +70,8 @@ fn a_start_with_more_states_than_the_budget_is_given_up() {
         let all = all_runs(&EmbeddedGraph::chain(edges), budget);
         assert_eq!(all.limit.is_none(), is_complete, "{edges} {budget}");
     }
-    let tally = check_worlds(&[graph], Algorithm1Run::default, RunChoices::All { budget: 3 }, &());
+    let tally =
+        check_worlds(&[graph], None, Algorithm1Run::default, RunChoices::All { budget: 3 }, &());
     assert_eq!((tally.starts, tally.mapped, tally.over_budget), (1, 1, 1));
 }
 

@@ -2,7 +2,8 @@
 
 mod add;
 mod estimate;
-mod explorer;
+mod explorer_sweep;
+mod explorer_tally;
 mod journal;
 mod line;
 mod report;
@@ -17,11 +18,11 @@ use std::{
 
 use toposlam_model::{
     check::{Check, FinishedUnits, Shard, SharedPrefixCheck, Tally, WorstStart},
-    embedded_graph::EmbeddedGraph,
+    embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
     format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
-    marker::{self, Marker},
+    marker::Marker,
 };
 
 use super::{
@@ -30,9 +31,10 @@ use super::{
     cluster::{ClusterOptions, ClusterSession, SharedOutput},
     edge_range::EdgeRange,
     exit_codes::help_end,
+    explorer::{ExplorerCommand, ExplorerOptions},
     input,
     mapping_marker::{
-        algorithm_for, check_worlds, is_directional, mapping_marker, movable_not_sufficient,
+        algorithm_for, check_worlds, is_directional, marker_kind, movable_not_sufficient,
     },
     method_options::algorithms,
     output,
@@ -42,10 +44,11 @@ use super::{
     version::version,
     write_world_or_picture,
 };
+use crate::picture::WorldPicture;
 use estimate::EstimateOptions;
-use explorer::{ExplorerCommand, ExplorerOptions, ExplorerSweep};
+use explorer_sweep::ExplorerSweep;
 use journal::{CheckJournal, JournalHeader};
-use line::SizeLine;
+use line::{FailedRun, FailureLine, SizeLine};
 use report::CheckReport;
 
 /// Run Algorithm 1 on every start of every world up to a size, and check every map
@@ -71,6 +74,8 @@ Examples:
   toposlam check --marker movable             a marker that the robot carries
   toposlam check --algorithm folding          the folding explorer
   toposlam check --explorer ./mine --edges 5  your own program
+  toposlam check --explorer ./mine --failed run.html
+                                              the run on the first failed start
   toposlam check --edges 10 --estimate        what a check will take
   toposlam check --edges 9 --journal nine     a check that can be killed
   toposlam check --edges 10 --hosts hosts.txt --process 0
@@ -85,6 +90,7 @@ Ctrl-C stops the check and prints the results so far.",
              the connection to another process is lost; no probe of an estimate found a start"),
     ],
 ))]
+#[command(mut_arg("explorer", |explorer| explorer.conflicts_with_all(NOT_FOR_EXPLORERS)))]
 #[command(mut_arg("hosts", |hosts| hosts.conflicts_with_all(NOT_SHARED)))]
 #[command(mut_arg("process", |process| process.conflicts_with_all(NOT_SHARED)))]
 pub(super) struct CheckArguments {
@@ -122,6 +128,10 @@ pub(super) struct CheckArguments {
     /// Check the worlds in a file (world file, planar_code or edge_code) instead
     #[arg(long, value_name = "FILE", conflicts_with_all = ["edges", "class", "shard"])]
     from: Option<PathBuf>,
+
+    /// Check one start of the world in the file
+    #[arg(long, value_name = "VERTEX:FACING", requires = "from")]
+    start: Option<String>,
 
     /// Write the start that took the most moves: .toml, .json, .dot, or plantri's .ec or .pc
     #[arg(long, value_name = "FILE")]
@@ -171,7 +181,7 @@ pub(super) struct CheckArguments {
 }
 
 /// Options of a check, which --add does not do.
-const NOT_ADDED: [&str; 15] = [
+const NOT_ADDED: [&str; 16] = [
     "edges",
     "class",
     "marker",
@@ -179,6 +189,7 @@ const NOT_ADDED: [&str; 15] = [
     "choices",
     "shard",
     "from",
+    "start",
     "worst",
     "failed",
     "threads",
@@ -189,14 +200,12 @@ const NOT_ADDED: [&str; 15] = [
     "hosts",
 ];
 
+/// Options of a check that explorers do not have.
+const NOT_FOR_EXPLORERS: [&str; 5] = ["algorithm", "choices", "shard", "estimate", "journal"];
+
 /// Options of a check that machines cannot share. Clap does not ask for `--hosts` where it cannot be given, so
 /// `--process` excludes them, too.
 const NOT_SHARED: [&str; 5] = ["shard", "from", "explorer", "estimate", "choices"];
-
-/// Parses the name of a kind of marker. For a name that no marker has, the error lists those of the algorithms.
-fn marker_kind(name: &str) -> Result<&'static dyn Marker, String> {
-    marker::named(name).or_else(|_| mapping_marker(name))
-}
 
 /// What maps the worlds.
 enum Mapper<'a> {
@@ -211,7 +220,8 @@ enum Work {
     /// All choices.
     All(Check),
     Enumerated(Enumeration),
-    Listed(Vec<EmbeddedGraph>),
+    /// With one start of each, or all.
+    Listed(Vec<EmbeddedGraph>, Option<Dart>),
 }
 
 impl CheckArguments {
@@ -234,7 +244,12 @@ impl CheckArguments {
             }
         };
         output::check_world_place(&self.worst, work.values().all(Work::is_simple))?;
-        output::check_place(&self.failed, &["toml", "json", "dot", "svg", "png"])?;
+        output::check_place(&self.failed, &["toml", "json", "dot", "svg", "png", "html"])?;
+        let is_page = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "html");
+        if self.failed.as_ref().is_some_and(is_page) && self.explorer.explorer.is_none() {
+            let cause = "a page shows the run of a program; it needs --explorer";
+            return Err(CliError::at("--failed", cause));
+        }
         match mapper {
             Mapper::Algorithm(algorithm, _) if self.estimate.estimate.is_some() => {
                 self.print_estimates(&work, algorithm, out)
@@ -261,7 +276,7 @@ impl CheckArguments {
         let mut report = CheckReport::new(out, self.json, order);
         let mut worst: Option<WorstStart> = None;
         // The first start that was mapped wrongly, and the first on which a limit was reached.
-        let mut unmapped = [None, None];
+        let mut unmapped: [Option<FailureLine>; 2] = [None, None];
         let mut cases = Vec::new();
         let mut sizes = work.into_iter();
         let (mut is_done, mut all_mapped) = (true, true);
@@ -272,7 +287,7 @@ impl CheckArguments {
             all_mapped &= line.failed == 0 && line.unknown.unwrap_or_default() == 0;
             cases.push(line.ci_case());
             for (first, found) in unmapped.iter_mut().zip([&line.failure, &line.limit]) {
-                *first = first.take().or_else(|| found.as_ref()?.named_world());
+                *first = first.take().or_else(|| found.clone());
             }
             report.size(line)?;
             if let Some(cluster) = &mut cluster {
@@ -308,11 +323,23 @@ impl CheckArguments {
         }
         if let Some(path) = &self.failed {
             match unmapped.iter().flatten().next() {
-                Some(world) => write_world_or_picture(path, world, &world.into())?,
+                Some(failure) => self.write_failed(path, failure)?,
                 None => remark!("{} is not written: each start was mapped", path.display()),
             }
         }
         Ok(outcome)
+    }
+
+    /// Writes the start of a failure as a world file, or the run as a picture or a page.
+    fn write_failed(&self, path: &Path, failure: &FailureLine) -> Result<(), CliError> {
+        let Some(world) = failure.named_world() else { return Ok(()) };
+        let is_file = |ending| ["toml", "json", "dot"].iter().any(|known| ending == *known);
+        match &failure.run {
+            FailedRun::Explorer(run) if !path.extension().is_some_and(is_file) => {
+                run.write(path, &world, self.marker)
+            }
+            _ => write_world_or_picture(path, &world, &WorldPicture::from(&world)),
+        }
     }
 
     /// Connects to the other processes, if there are others.
@@ -347,7 +374,8 @@ impl CheckArguments {
                 let tally = sweep.run(work, &progress);
                 progress.finish();
                 let tally = tally?;
-                return Ok((tally.line(line, &sweep.command.text), tally.counts.worst));
+                let line = tally.line(line, &sweep.command.text, sweep.marker);
+                return Ok((line, tally.counts.worst));
             }
         };
         let progress = Progress::new(&name, "starts")?;
@@ -357,7 +385,9 @@ impl CheckArguments {
                 let moves_made = tally.moves_made;
                 (tally, Some(moves_made))
             }
-            Work::Listed(graphs) => (algorithm.check_worlds(graphs, choices, &progress), None),
+            Work::Listed(graphs, start) => {
+                (algorithm.check_worlds(graphs, *start, choices, &progress), None)
+            }
             Work::All(sweep) => (algorithm.sweep(sweep, choices, &progress), None),
             // It is for explorers.
             Work::Enumerated(_) => (Tally::default(), None),
@@ -469,7 +499,14 @@ impl CheckArguments {
 
     /// The worlds of a file, by their number of edges.
     fn listed(&self, path: &Path) -> Result<BTreeMap<usize, Work>, CliError> {
-        let graphs = input::read_graphs(path)?;
+        let (graphs, start) = match &self.start {
+            None => (input::read_graphs(path)?, None),
+            Some(start) => {
+                let world = input::read_world(path)?;
+                let start = input::start_of(&world, Some(start))?;
+                (vec![world.graph], Some(start))
+            }
+        };
         if self.explorer.explorer.is_none() {
             check_worlds(self.marker, path, &graphs)?;
         }
@@ -477,7 +514,7 @@ impl CheckArguments {
         for graph in graphs {
             sizes.entry(graph.edge_count()).or_default().push(graph);
         }
-        Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Listed(graphs))).collect())
+        Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Listed(graphs, start))).collect())
     }
 }
 
@@ -488,18 +525,18 @@ impl Work {
             Self::Shared(sweep) => sweep.class().is_simple(),
             Self::All(sweep) => sweep.class().is_simple(),
             Self::Enumerated(worlds) => worlds.class().is_simple(),
-            Self::Listed(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
+            Self::Listed(graphs, _) => graphs.iter().all(EmbeddedGraph::is_simple),
         }
     }
 
-    /// Visits the worlds for an explorer.
+    /// Visits the worlds for an explorer, each with the only start that is checked, if not all are.
     fn for_each_world(
         &self,
-        visit: &mut dyn FnMut(&EmbeddedGraph) -> ControlFlow<()>,
+        visit: &mut dyn FnMut(&EmbeddedGraph, Option<Dart>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         match self {
-            Self::Enumerated(worlds) => worlds.for_each(&mut |found| visit(found.graph)),
-            Self::Listed(graphs) => graphs.iter().try_for_each(visit),
+            Self::Enumerated(worlds) => worlds.for_each(&mut |found| visit(found.graph, None)),
+            Self::Listed(graphs, start) => graphs.iter().try_for_each(|graph| visit(graph, *start)),
             // They are for algorithms.
             Self::Shared(_) | Self::All(_) => ControlFlow::Continue(()),
         }

@@ -1,5 +1,6 @@
 //! `toposlam explore WORLD`: one algorithm in one world, as a story.
 
+mod own;
 mod report;
 mod summary;
 
@@ -21,8 +22,9 @@ use super::{
     CliError, Outcome, RunChoices,
     certificate_cost::CertificateCost,
     exit_codes::help_end,
+    explorer::ExplorerOptions,
     input,
-    mapping_marker::{algorithm_for, check_worlds, is_directional, mapping_marker},
+    mapping_marker::{algorithm_for, check_worlds, is_directional, marker_kind},
     method_options::{AuditOption, algorithms},
     output,
     progress::{StopSignal, watch_for_interrupt},
@@ -49,6 +51,8 @@ use summary::Summary;
 ///
 /// With --marker movable, the algorithm for one movable marker runs instead. It needs a world without
 /// loops and parallel edges.
+///
+/// With --explorer, a program of yours runs instead, and each of its steps is printed.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
@@ -61,6 +65,7 @@ Examples:
   toposlam explore worlds/building-25.toml --story=summary
   toposlam explore worlds/shape-6.toml --certificate
   toposlam explore worlds/shape-6.toml --algorithm folding --audit
+  toposlam explore worlds/shape-6.toml --explorer ./mine
 
 In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
 which the vertex was first entered. When the robot has followed an unexplored dart, each other \
@@ -68,11 +73,13 @@ unexplored dart may be the other end of the same edge. A candidate is one that t
 rule out. To test it, the robot follows the path that would lead from there to the marker.",
     &[
         (0, "the map is right"),
-        (1, "the map is wrong"),
+        (1, "the map is wrong, or the explorer failed"),
         (2, "bad usage or input"),
-        (3, "not known: ended by Ctrl-C, or --max-darts, the states of --choices or 1 GiB of memory for the states was reached"),
+        (3, "not known: ended by Ctrl-C, or --max-darts, the states of --choices, 1 GiB of memory for the states or a \
+             --limit was reached"),
     ],
 ))]
+#[command(mut_arg("explorer", |explorer| explorer.conflicts_with_all(NOT_FOR_EXPLORERS)))]
 pub(super) struct ExploreArguments {
     /// A world file, or a plantri file with one world
     world: PathBuf,
@@ -85,8 +92,8 @@ pub(super) struct ExploreArguments {
     #[arg(long, default_value = "algorithm1", hide_possible_values = true, value_parser = algorithms())]
     algorithm: MappingAlgorithm,
 
-    /// The robot's marker: directional or movable
-    #[arg(long, default_value = "directional", value_parser = mapping_marker)]
+    /// The robot's marker: directional or movable; any kind with --explorer
+    #[arg(long, default_value = "directional", value_name = "KIND", value_parser = marker_kind)]
     marker: &'static dyn Marker,
 
     /// Runs: default, or all to also try every choice that Algorithm 1 leaves open; with all=N, stop at more
@@ -119,7 +126,13 @@ pub(super) struct ExploreArguments {
     /// Print one JSON object, with the doors taken and each pick-up and drop
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    explorer: ExplorerOptions,
 }
+
+/// Options of runs that explorers do not have.
+const NOT_FOR_EXPLORERS: [&str; 5] = ["algorithm", "choices", "max_darts", "story", "audit"];
 
 /// How much of a run is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -149,20 +162,30 @@ impl ExploreArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         watch_for_interrupt()?;
         let world = input::read_world(&self.world)?;
+        if let Some(command) = &self.explorer.explorer {
+            let facing = input::start_of(&world, self.start.as_deref())?;
+            self.check_outputs(&world)?;
+            return self.explore_by(command, &world, facing, out);
+        }
         check_worlds(self.marker, &self.world, std::slice::from_ref(&world.graph))?;
         let facing = input::start_of(&world, self.start.as_deref())?;
+        self.check_outputs(&world)?;
+        let algorithm = algorithm_for(self.algorithm, self.marker, self.choices)?;
+        self.explore(algorithm, &world, facing, out)
+    }
+
+    /// Checks what is to be written and printed before the run.
+    fn check_outputs(&self, world: &NamedWorld) -> Result<(), CliError> {
         for path in &self.map {
             output::check_map_place(path, world.graph.is_simple())?;
         }
         let of_directional =
             [("--certificate", self.certificate), ("--audit", self.audit.audits().is_some())];
-        for (option, is_given) in of_directional {
-            if is_given && !is_directional(self.marker) {
-                return Err(CliError::at(option, "needs --marker directional"));
-            }
+        let other = of_directional.into_iter().find(|(_, is_given)| *is_given);
+        match other.filter(|_| !is_directional(self.marker)) {
+            Some((option, _)) => Err(CliError::at(option, "needs --marker directional")),
+            None => Ok(()),
         }
-        let algorithm = algorithm_for(self.algorithm, self.marker, self.choices)?;
-        self.explore(algorithm, &world, facing, out)
     }
 
     fn explore(

@@ -5,7 +5,7 @@ use std::{fmt::Display, path::Path};
 use toposlam_model::{
     embedded_graph::EmbeddedGraph,
     mapping::MappingAlgorithm,
-    marker::{Directional, Marker},
+    marker::{self, Directional, Marker},
 };
 
 use super::{CliError, RunChoices};
@@ -16,6 +16,11 @@ pub(super) fn mapping_marker(name: &str) -> Result<&'static dyn Marker, String> 
     markers
         .find(|marker| marker.name() == name)
         .ok_or_else(|| format!("no algorithm maps with `{name}`; choose directional or movable"))
+}
+
+/// Parses the name of a kind of marker. For a name that no marker has, the error lists those of the algorithms.
+pub(super) fn marker_kind(name: &str) -> Result<&'static dyn Marker, String> {
+    marker::named(name).or_else(|_| mapping_marker(name))
 }
 
 /// Whether the marker is that of Algorithm 1, for which there are certificates.

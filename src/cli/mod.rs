@@ -12,6 +12,7 @@ mod draw;
 mod drive;
 mod earlier_logs;
 mod explore;
+mod explorer;
 mod info;
 mod laser_options;
 mod mapping_marker;

@@ -27,16 +27,7 @@ pub(crate) fn write(
     poses: [Dart; 2],
 ) -> Result<(), CliError> {
     for world in worlds {
-        let states = state_count(&world.graph, marker);
-        if states > MOST_STATES {
-            let cause = format!(
-                "{} has {} states; a page can show at most {}",
-                world.name,
-                grouped(states as u128),
-                grouped(MOST_STATES as u128)
-            );
-            return Err(CliError::in_file(path, cause));
-        }
+        check_states(path, world, marker)?;
     }
     let kind = if marker.name() == "none" { "no" } else { marker.name() };
     let title = format!("{} and {}, {kind} marker", worlds[0].name, worlds[1].name);
@@ -59,4 +50,22 @@ pub(crate) fn write(
     let about = format!("{} {}", sentence(marker.about()), sentence(&verdict));
     let document = page(&WalkPage { title: &title, about: &about, worlds, comparison, poses });
     output::write_whole(path, document.as_bytes())
+}
+
+/// Checks that a page can show a world.
+///
+/// # Errors
+/// Returns an error if the robot can be in too many states.
+pub(super) fn check_states(
+    path: &Path,
+    world: &NamedWorld,
+    marker: &dyn Marker,
+) -> Result<(), CliError> {
+    let states = state_count(&world.graph, marker);
+    if states <= MOST_STATES {
+        return Ok(());
+    }
+    let [states, most] = [states, MOST_STATES].map(|count| grouped(count as u128));
+    let cause = format!("{} has {states} states; a page can show at most {most}", world.name);
+    Err(CliError::in_file(path, cause))
 }

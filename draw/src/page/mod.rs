@@ -1,17 +1,19 @@
 //! Pages for a browser: a walk in two worlds at once ([`page`]), the run of a simulated robot
-//! ([`run_page`]), conformance reports ([`conform_page`]), and a game in which a person is the robot
-//! ([`play_page`]).
+//! ([`run_page`]), the run of an explorer ([`explorer_page`]), conformance reports ([`conform_page`]), and a game in
+//! which a person is the robot ([`play_page`]).
 //!
 //! Each is one self-contained HTML document that needs no network. Its HTML, CSS and scripts are in
 //! `browser/`.
 
 mod conform;
+mod explorer;
 mod play;
 mod run;
 mod template;
 mod walk;
 
 pub use conform::{ReportOrigin, conform_page};
+pub use explorer::explorer_page;
 pub use play::play_page;
 pub use run::run_page;
 pub use walk::{MOST_PAIRS, WalkPage, page};

@@ -30,6 +30,7 @@ mod png;
 mod routes;
 mod run;
 mod scale;
+mod side_by_side;
 mod signs;
 mod size;
 #[cfg(feature = "png")]
@@ -60,6 +61,7 @@ pub use png::{PictureError, png};
 pub(crate) use run::example;
 pub use run::run_svg;
 pub(crate) use run::{Drawn, run_drawing};
+pub use side_by_side::side_by_side;
 #[cfg(feature = "png")]
 pub use stage::with_legend;
 pub(crate) use text::escaped;

@@ -1,10 +1,11 @@
 //! Is a right map a guess? A walk determines its world exactly if its folded trail is complete: see
 //! [`folding`](crate::folding). After any other walk there is another world in which a deterministic explorer
-//! makes the same walk, and returns the same map.
+//! makes the same walk, and returns the same map. The smallest one shows what the walk leaves open.
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    folding::fold,
+    enumerate::{Class, Watch},
+    folding::{FoldedTrail, SmallestWorld, WorldSearch, fold, smallest_other_world},
     marker::{Directional, Marker, NoMarker},
     percept::Door,
     world::{Action, GraphWorld},
@@ -15,10 +16,34 @@ use crate::{
 /// `None` if that is not known: with a marker whose sightings folding does not identify, that is, with all but
 /// [`Directional`] and [`NoMarker`]; or if a door does not exist, or the walk is too long to be folded.
 pub fn determines_world(
-    (graph, facing): (&EmbeddedGraph, Dart),
+    start: (&EmbeddedGraph, Dart),
     marker: &dyn Marker,
     doors: &[Door],
 ) -> Option<bool> {
+    // Without a marker the folded trail is a tree, which is the world if no dart is open.
+    Some(folded_walk(start, marker, doors)?.open_count() == 0)
+}
+
+/// The smallest other world that gives the same percepts on a walk from a start: in it, a deterministic explorer makes
+/// the same walk. There is one unless the walk determines its world. `None` if it is not known whether it does.
+pub fn other_world(
+    start: (&EmbeddedGraph, Dart),
+    marker: &dyn Marker,
+    doors: &[Door],
+    watch: &dyn Watch,
+) -> Option<SmallestWorld> {
+    let search =
+        WorldSearch { class: Class::Multigraph, max_edges: None, steps: WorldSearch::STEPS };
+    Some(smallest_other_world(&folded_walk(start, marker, doors)?, start, search, watch))
+}
+
+/// The folded trail of a walk from a start; `None` if folding is not exact for the marker, a door does not exist, or
+/// the walk is too long.
+fn folded_walk(
+    (graph, facing): (&EmbeddedGraph, Dart),
+    marker: &dyn Marker,
+    doors: &[Door],
+) -> Option<FoldedTrail> {
     let known: [&dyn Marker; 2] = [&Directional, &NoMarker];
     if known.iter().all(|known| known.name() != marker.name()) {
         return None;
@@ -29,14 +54,20 @@ pub fn determines_world(
         world.act(Action::Take(door)).ok()?;
         percepts.push(world.sensed());
     }
-    // Without a marker the folded trail is a tree, which is the world if no dart is open.
-    Some(fold(&percepts, doors).ok()?.open_count() == 0)
+    fold(&percepts, doors).ok()
 }
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
-    use crate::{any_graph::by_edges, folding::certificate, marker::Undirected};
+    use crate::{
+        any_graph::{any_graph, by_edges, starts, walk},
+        folding::certificate,
+        isomorphism::code,
+        marker::Undirected,
+    };
 
     /// An edge with a loop at its end. The start is the other end.
     fn edge_and_loop() -> EmbeddedGraph {
@@ -69,5 +100,66 @@ mod tests {
         assert_eq!(determined(&edge, &[]), Some(false));
         assert_eq!(determined(&edge, &[0]), Some(true));
         assert_eq!(determined(&edge_and_loop(), &[0, 1, 1, 0, 1, 1]), Some(false));
+    }
+
+    /// The other world after a walk from dart 0, and whether it is the smallest; the walk does not determine its world.
+    fn other(graph: &EmbeddedGraph, marker: &dyn Marker, walk: &[Door]) -> (EmbeddedGraph, bool) {
+        match other_world((graph, Dart(0)), marker, walk, &()) {
+            Some(SmallestWorld::World { graph, limit, .. }) => (graph, limit.is_none()),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn after_no_move_an_edge_may_be_a_longer_chain_and_after_one_it_is_an_edge() {
+        let edge = EmbeddedGraph::chain(1);
+        let start = (&edge, Dart(0));
+        let (longer, is_smallest) = other(&edge, &Directional, &[]);
+        assert_eq!(code(&longer, Dart(0)), code(&EmbeddedGraph::chain(2), Dart(0)));
+        assert!(is_smallest);
+        let after = other_world(start, &Directional, &doors(&[0]), &());
+        assert_eq!(after, Some(SmallestWorld::NoWorld));
+        assert_eq!(other_world(start, &Undirected, &[], &()), None);
+    }
+
+    #[test]
+    fn a_walk_round_a_ring_of_three_without_a_marker_may_be_a_loop() {
+        let ring = EmbeddedGraph::cycle(3);
+        let (smallest, is_smallest) = other(&ring, &NoMarker, &doors(&[1; 7]));
+        assert_eq!((smallest.edge_count(), smallest.vertex_count()), (1, 1));
+        assert!(is_smallest);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// By trying all worlds with up to 6 edges.
+        #[test]
+        fn the_other_world_is_the_smallest_that_explains_the_walk(
+            graph in any_graph(Class::Multigraph, 5),
+            turns in prop::collection::vec(any::<u8>(), 0..12),
+            marker in prop::sample::select(vec![&Directional as &dyn Marker, &NoMarker]),
+        ) {
+            let world = GraphWorld::with_marker(&graph, marker, Dart(0));
+            let (percepts, doors) = walk(world, turns.iter().copied().map(u32::from));
+            prop_assume!(determines_world((&graph, Dart(0)), marker, &doors) == Some(false));
+            let explains = |other: &EmbeddedGraph| {
+                let mut world = GraphWorld::with_marker(other, marker, Dart(0));
+                world.sensed() == percepts[0]
+                    && doors.iter().zip(&percepts[1..]).all(|(&door, &percept)| {
+                        world.act(Action::Take(door)).is_ok() && world.sensed() == percept
+                    })
+            };
+            let (found, is_smallest) = other(&graph, marker, &doors);
+            prop_assert!(explains(&found) && code(&found, Dart(0)) != code(&graph, Dart(0)));
+            prop_assume!(is_smallest);
+            let smallest = (1..=6).find(|&edges| {
+                let others = starts(Class::Multigraph, edges);
+                others.iter().any(|other| {
+                    explains(other) && code(other, Dart(0)) != code(&graph, Dart(0))
+                })
+            });
+            prop_assert_eq!(Some(found.edge_count()).filter(|&edges| edges <= 6), smallest);
+        }
     }
 }

@@ -105,10 +105,11 @@ impl Check {
     }
 }
 
-/// Checks explorers on every start of some worlds, each on one part of them. As with a [`Check`], the result does
-/// not depend on the number of threads.
+/// Checks explorers on every start of some worlds, or on one start of each, each explorer on one part of them. As with
+/// a [`Check`], the result does not depend on the number of threads.
 pub fn check_worlds<E: Explorer>(
     graphs: &[EmbeddedGraph],
+    start: Option<Dart>,
     new: impl Fn() -> E + Sync,
     choices: RunChoices,
     watch: &dyn Watch,
@@ -116,8 +117,12 @@ pub fn check_worlds<E: Explorer>(
     let parts: Vec<_> = graphs.chunks(64).collect();
     tally_parts(&parts, watch, |part, tally| {
         let mut checker = StartChecker::new(&new, choices, watch);
-        part.iter().try_for_each(|graph| {
-            checker.check_starts(graph, canonical(graph).automorphisms, tally)
+        part.iter().try_for_each(|graph| match start {
+            None => checker.check_starts(graph, canonical(graph).automorphisms, tally),
+            Some(facing) => {
+                tally.worlds += 1;
+                checker.check_these(graph, [facing].into_iter(), tally)
+            }
         })
     })
 }
@@ -165,9 +170,25 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
         tally: &mut Tally,
     ) -> ControlFlow<()> {
         tally.worlds += 1;
+        if automorphisms == 1 {
+            self.check_these(graph, graph.darts(), tally)
+        } else {
+            // Darts that an automorphism takes to each other are the same start.
+            let orbit = canonical(graph).orbit;
+            let starts = graph.darts().filter(|dart| orbit[dart.at()] == *dart);
+            self.check_these(graph, starts, tally)
+        }
+    }
+
+    fn check_these(
+        &mut self,
+        graph: &EmbeddedGraph,
+        mut starts: impl Iterator<Item = Dart>,
+        tally: &mut Tally,
+    ) -> ControlFlow<()> {
         // The starts at one vertex follow one another, and have one certificate.
         let mut measured: Option<(Vertex, u64)> = None;
-        let mut check = |facing| {
+        starts.try_for_each(|facing| {
             let vertex = graph.vertex(facing);
             if let Some(tree) = &mut self.certificates
                 && measured.is_none_or(|(at, _)| at != vertex)
@@ -177,14 +198,7 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
             tally.starts += 1;
             self.check_start((graph, facing), measured.map(|(_, length)| length), tally);
             check_stop(self.watch)
-        };
-        if automorphisms == 1 {
-            graph.darts().try_for_each(check)
-        } else {
-            // Darts that an automorphism takes to each other are the same start.
-            let orbit = canonical(graph).orbit;
-            graph.darts().filter(|dart| orbit[dart.at()] == *dart).try_for_each(&mut check)
-        }
+        })
     }
 
     fn check_start(

@@ -46,6 +46,19 @@ impl EmbeddedGraph {
         }
     }
 
+    /// Adds an edge behind the last vertex, which is a dead end. Its other end is a dead end, too.
+    pub(crate) fn lengthen_dead_end(&mut self) {
+        let end = Dart(self.darts.len() as u32 - 1);
+        let before = self.opposite(end);
+        self.unjoin(before, end);
+        self.remove_vertex();
+        for degree in [2, 1] {
+            let _: Vertex = self.add_vertex(degree);
+        }
+        self.join(before, end);
+        self.join(Dart(end.0 + 1), Dart(end.0 + 2));
+    }
+
     /// The dart's opposite; `None` while it is free.
     #[inline]
     pub(crate) fn joined(&self, dart: Dart) -> Option<Dart> {

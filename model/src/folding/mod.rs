@@ -31,7 +31,7 @@ pub use closed::ClosedTrail;
 pub use contradiction::{ContradictionReason, FoldError, MAX_DARTS, TrailError};
 pub use marked_vertex::MarkedTrails;
 pub(crate) use marker_tree::MarkerTree;
-pub use smallest::{SearchLimit, SmallestWorld, WorldSearch, smallest_world};
+pub use smallest::{SearchLimit, SmallestWorld, WorldSearch, smallest_other_world, smallest_world};
 pub use trail::FoldedTrail;
 
 use crate::percept::{Door, Percept, WalkEvent};

@@ -8,11 +8,11 @@
 
 use std::collections::{HashSet, VecDeque};
 
-use super::{FoldedTrail, MarkedTrails};
+use super::{ClosedTrail, FoldedTrail, MarkedTrails};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Watch},
-    isomorphism::discovery_order,
+    isomorphism::{StartCode, code, discovery_order},
 };
 
 /// The worlds to search, and the limit of the search.
@@ -80,14 +80,34 @@ pub fn smallest_world(
     search: WorldSearch,
     watch: &dyn Watch,
 ) -> SmallestWorld {
+    smallest(trail, None, search, watch)
+}
+
+/// Finds the smallest world that explains the walk of a trail and is not isomorphic to a start.
+pub fn smallest_other_world(
+    trail: &FoldedTrail,
+    (graph, facing): (&EmbeddedGraph, Dart),
+    search: WorldSearch,
+    watch: &dyn Watch,
+) -> SmallestWorld {
+    smallest(trail, Some(&code(graph, facing)), search, watch)
+}
+
+/// The smallest world that does not have the code `except`.
+fn smallest(
+    trail: &FoldedTrail,
+    except: Option<&StartCode>,
+    search: WorldSearch,
+    watch: &dyn Watch,
+) -> SmallestWorld {
     if trail.marked_vertex().is_none() {
-        return smallest_of_trail(trail, search, watch);
+        return smallest_of_trail(trail, except, search, watch);
     }
     let MarkedTrails { trails, may_be_more } = trail.with_one_marked_vertex(watch);
     let mut limit = may_be_more.then_some(SearchLimit::Steps);
     let mut best: Option<FoundWorld> = None;
     for trail in &trails {
-        match smallest_of_trail(trail, search, watch) {
+        match smallest_of_trail(trail, except, search, watch) {
             SmallestWorld::World { graph, marker, limit: reached } => {
                 limit = limit.or(reached);
                 if best.as_ref().is_none_or(|(best, _)| graph.edge_count() < best.edge_count()) {
@@ -115,9 +135,15 @@ impl SmallestWorld {
 }
 
 /// Does the same for a trail in which only one vertex has an undirected marker.
-fn smallest_of_trail(trail: &FoldedTrail, search: WorldSearch, watch: &dyn Watch) -> SmallestWorld {
+fn smallest_of_trail(
+    trail: &FoldedTrail,
+    except: Option<&StartCode>,
+    search: WorldSearch,
+    watch: &dyn Watch,
+) -> SmallestWorld {
     let mut state = Search {
         trail: trail.clone(),
+        except,
         class: search.class,
         max_edges: search.max_edges,
         watch,
@@ -184,6 +210,8 @@ impl Undecided {
 
 struct Search<'w> {
     trail: FoldedTrail,
+    /// The code of a world that is left out.
+    except: Option<&'w StartCode>,
     class: Class,
     max_edges: Option<usize>,
     watch: &'w dyn Watch,
@@ -311,7 +339,7 @@ impl Search<'_> {
 
     /// Joins open darts in pairs; all vertices are distinct.
     fn join(&mut self) {
-        if self.class == Class::Multigraph {
+        if self.class == Class::Multigraph && self.except.is_none() {
             self.join_all();
         } else if self.propose(&[]) {
             let open: Vec<Dart> = self.trail.open_darts().collect();
@@ -351,8 +379,11 @@ impl Search<'_> {
         self.ascend(open.len());
     }
 
-    /// Whether an edge between two open darts leaves the world simple.
+    /// Whether an edge between two open darts leaves the world in the class.
     fn may_join(&self, one: Dart, other: Dart, edges: &[(Dart, Dart)]) -> bool {
+        if !self.class.is_simple() {
+            return true;
+        }
         let trail = &self.trail;
         let ends = [one, other].map(|dart| trail.vertex(dart));
         let is_between = |one: Dart, other: Dart| {
@@ -382,15 +413,23 @@ impl Search<'_> {
         if !better && self.class != Class::Planar {
             return true;
         }
-        let (closed, start) = self.trail.closed_by(joined);
-        if self.class == Class::Planar && closed.graph.genus() > 0 {
+        let (ClosedTrail { mut graph, marker, .. }, start) = self.trail.closed_by(joined);
+        if self.class == Class::Planar && graph.genus() > 0 {
             return false;
         }
+        if better && self.except.is_some_and(|except| code(&graph, start) == *except) {
+            // With one edge more behind a dead end it is another world.
+            let has_dead_end = self.trail.open_count() > 2 * joined.len();
+            if !has_dead_end || self.exceeds(edges + 1) {
+                return true;
+            }
+            graph.lengthen_dead_end();
+        }
         if better {
-            let order = discovery_order(&closed.graph, start);
+            let order = discovery_order(&graph, start);
             let place = |dart| order.iter().position(|&known| known == dart);
-            let marker = closed.marker.and_then(place).map(|place| Dart(place as u32));
-            self.best = Some((closed.graph.renumbered(&order), marker));
+            let marker = marker.and_then(place).map(|place| Dart(place as u32));
+            self.best = Some((graph.renumbered(&order), marker));
         }
         true
     }

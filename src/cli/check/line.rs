@@ -10,12 +10,13 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     format::{named_world::NamedWorld, world_file},
     mapping::MappingAlgorithm,
-    world::Action,
+    marker::Marker,
 };
 
 use crate::cli::{
     CliError, Outcome, RunChoices,
     ci_report::CiCase,
+    explorer::{ExplorerFault, ReportedRun},
     text::{counted, grouped},
 };
 
@@ -108,15 +109,8 @@ pub(super) struct FailureLine {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(untagged)]
 pub(super) enum FailedRun {
-    Explorer {
-        message: String,
-        last_actions: Vec<Action>,
-        /// The end of the standard error, if the process was ended.
-        stderr: String,
-    },
-    Algorithm {
-        step: Option<String>,
-    },
+    Explorer(ReportedRun),
+    Algorithm { step: Option<String> },
 }
 
 impl FailureLine {
@@ -139,6 +133,17 @@ impl FailureLine {
         let about = format!("{} fails here: {flaw}", algorithm.info().title);
         let run = FailedRun::Algorithm { step };
         Self::new(flaw.to_string(), *moves, &about, (graph, *facing), run)
+    }
+
+    /// The same failure; with the other world of a guess.
+    pub(super) fn explained(mut self, marker: &dyn Marker) -> Self {
+        if self.cause == ExplorerFault::GUESSED
+            && let Some(world) = self.named_world()
+            && let (FailedRun::Explorer(run), Some(facing)) = (&mut self.run, world.start)
+        {
+            run.find_other_world((&world.graph, facing), marker);
+        }
+        self
     }
 
     /// The world with its start; `None` if it is not a world.
@@ -351,7 +356,8 @@ impl SizeLine {
                 FailedRun::Algorithm { .. } => {
                     write!(message, "; the first wrong one: {}", failure.cause)
                 }
-                FailedRun::Explorer { message: what, .. } => {
+                FailedRun::Explorer(run) => {
+                    let what = run.message.as_deref().unwrap_or_default();
                     let what = what.strip_prefix("The explorer ").unwrap_or(what);
                     write!(message, "; on the first other one, the explorer {what}")
                 }

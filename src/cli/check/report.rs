@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use toposlam_model::{
     format::world_file,
     mapping::{CostOrder, MappingAlgorithm},
-    world::Action,
+    marker::named,
 };
 
 use super::line::{FailedRun, FailureLine, SizeLine};
@@ -15,7 +15,7 @@ use crate::cli::{
     CliError, Outcome,
     cluster::ClusterSession,
     json::print_line,
-    text::{counted, grouped, print_hanging, print_indented, print_paragraph},
+    text::{counted, grouped, print_hanging, print_paragraph},
 };
 
 /// A line of `--json`: the counts, and the verdict that follows from them.
@@ -182,7 +182,8 @@ impl<'o> CheckReport<'o> {
                 let explore = format!("toposlam explore --marker {}{algorithm}", line.marker);
                 print_paragraph(self.out, &format!("The start, as a world file for `{explore}`:"))?;
             }
-            FailedRun::Explorer { message, last_actions, stderr } => {
+            FailedRun::Explorer(run) => {
+                let message = run.message.as_deref().unwrap_or_default();
                 let it = message.strip_prefix("The explorer ").unwrap_or(message);
                 let moves = counted(moves.unwrap_or_default() as usize, "move");
                 let end = if it.ends_with('?') { "" } else { "." };
@@ -191,17 +192,11 @@ impl<'o> CheckReport<'o> {
                     "The first start on which the explorer {what}. After {moves}, it {stopped}{end}"
                 );
                 print_paragraph(self.out, &text)?;
-                if !last_actions.is_empty() {
-                    let actions: Vec<_> = last_actions.iter().map(Action::to_string).collect();
-                    print_hanging(self.out, "  last doors  ", &actions.join(" "))?;
+                writeln!(self.out)?;
+                if let (Some(world), Ok(marker)) = (failure.named_world(), named(&line.marker)) {
+                    run.print(&world, marker, self.out)?;
                 }
-                if !stderr.is_empty() {
-                    writeln!(self.out, "  the end of its standard error:")?;
-                    for line in stderr.lines() {
-                        let plain = line.replace(char::is_control, " ");
-                        print_indented(self.out, "    ", 4, plain.trim_end())?;
-                    }
-                }
+                writeln!(self.out)?;
                 print_paragraph(self.out, "The start, as a world file:")?;
             }
         }

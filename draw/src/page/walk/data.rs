@@ -29,7 +29,8 @@ pub(super) fn json(page: &WalkPage, [one, other]: [&WalkSide; 2]) -> String {
     in_script(&data)
 }
 
-fn side(side: &WalkSide) -> Value {
+/// A world, and the states of its robot.
+pub(in crate::page) fn side(side: &WalkSide) -> Value {
     let states = side.robots.iter().zip(&side.actions);
     json!({
         "name": side.world.name,

@@ -4,7 +4,8 @@
 mod data;
 mod side;
 
-use side::WalkSide;
+pub(super) use data::side as side_json;
+pub(super) use side::WalkSide;
 use toposlam_model::{
     ambiguity::Comparison, embedded_graph::Dart, format::named_world::NamedWorld,
 };

@@ -12,17 +12,17 @@ use toposlam_model::{
 use crate::picture::{WorldPicture, svg};
 
 /// A world, and the states that a robot can reach in it.
-pub(super) struct WalkSide<'a> {
-    pub(super) world: &'a NamedWorld,
+pub(in crate::page) struct WalkSide<'a> {
+    pub(in crate::page) world: &'a NamedWorld,
     /// The robot in each state that it can reach, the start first.
-    pub(super) robots: Vec<PlacedRobot<'a>>,
+    pub(in crate::page) robots: Vec<PlacedRobot<'a>>,
     /// The actions in each state, and the index of the state after each.
-    pub(super) actions: Vec<Vec<(Action, usize)>>,
+    pub(in crate::page) actions: Vec<Vec<(Action, usize)>>,
     place: HashMap<State, usize>,
 }
 
 impl<'a> WalkSide<'a> {
-    pub(super) fn new(world: &'a NamedWorld, start: &PlacedRobot<'a>) -> Self {
+    pub(in crate::page) fn new(world: &'a NamedWorld, start: &PlacedRobot<'a>) -> Self {
         let robots = vec![start.clone()];
         let place = HashMap::from([(start.state(), 0)]);
         let mut side = Self { world, robots, actions: Vec::new(), place };
@@ -43,13 +43,13 @@ impl<'a> WalkSide<'a> {
     }
 
     /// The index of a state; that of the start if the robot cannot reach the state.
-    pub(super) fn place(&self, state: State) -> usize {
+    pub(in crate::page) fn place(&self, state: State) -> usize {
         self.place.get(&state).copied().unwrap_or_default()
     }
 
     /// The drawing of the world, without texts; and without its marker if that can be moved, because the
     /// page draws it.
-    pub(super) fn picture(&self) -> String {
+    pub(in crate::page) fn picture(&self) -> String {
         let marker = *self.robots[0].marker();
         let start = self.placed().filter(|_| !marker.is_movable());
         svg(&WorldPicture {
@@ -61,7 +61,7 @@ impl<'a> WalkSide<'a> {
         })
     }
 
-    pub(super) fn marker_place(&self) -> String {
+    pub(in crate::page) fn marker_place(&self) -> String {
         let marker = *self.robots[0].marker();
         let picture =
             WorldPicture { start: self.placed(), marker, ..WorldPicture::from(self.world) };

@@ -22,16 +22,10 @@ use toposlam_model::{
     marker::Marker,
 };
 
-use super::{
-    ExplorerLimits,
-    fault::ExplorerFault,
-    process::{ExplorerCommand, ExplorerProcess},
-    run::ExplorerStart,
-    tally::ExplorerTally,
-};
+use super::{Work, explorer_tally::ExplorerTally};
 use crate::cli::{
     CliError,
-    check::Work,
+    explorer::{ExplorerCommand, ExplorerFault, ExplorerLimits, ExplorerProcess, ExplorerStart},
     mapping_marker::is_directional,
     progress::{Progress, must_stop},
 };
@@ -40,10 +34,10 @@ use crate::cli::{
 const BATCH: usize = 256;
 
 /// What is run, and within which limits.
-pub(in crate::cli::check) struct ExplorerSweep<'a> {
-    pub(in crate::cli::check) command: &'a ExplorerCommand,
-    pub(in crate::cli::check) limits: ExplorerLimits,
-    pub(in crate::cli::check) marker: &'static dyn Marker,
+pub(super) struct ExplorerSweep<'a> {
+    pub(super) command: &'a ExplorerCommand,
+    pub(super) limits: ExplorerLimits,
+    pub(super) marker: &'static dyn Marker,
 }
 
 /// Worlds with the facing darts of their starts.
@@ -66,7 +60,7 @@ fn send_batches(work: &Work, batches: &SyncSender<Batch>) {
     let mut number = 0;
     let mut worlds = Vec::new();
     let mut starts = 0;
-    let all = work.for_each_world(&mut |graph| {
+    let all = work.for_each_world(&mut |graph, facing| {
         if starts >= BATCH {
             starts = 0;
             let batch = Batch { number, worlds: std::mem::take(&mut worlds), is_last: false };
@@ -75,9 +69,7 @@ fn send_batches(work: &Work, batches: &SyncSender<Batch>) {
                 return ControlFlow::Break(());
             }
         }
-        let orbit = canonical(graph).orbit;
-        // Darts that an automorphism takes to each other are the same start.
-        let facing: Vec<_> = graph.darts().filter(|dart| orbit[dart.at()] == *dart).collect();
+        let facing = facing.map_or_else(|| distinct_starts(graph), |facing| vec![facing]);
         starts += facing.len();
         worlds.push((graph.clone(), facing));
         ControlFlow::Continue(())
@@ -88,16 +80,18 @@ fn send_batches(work: &Work, batches: &SyncSender<Batch>) {
     }
 }
 
+/// Of the darts that an automorphism takes to each other, which are the same start, the first.
+fn distinct_starts(graph: &EmbeddedGraph) -> Vec<Dart> {
+    let orbit = canonical(graph).orbit;
+    graph.darts().filter(|dart| orbit[dart.at()] == *dart).collect()
+}
+
 impl ExplorerSweep<'_> {
     /// Runs the explorer on every start.
     ///
     /// # Errors
     /// Returns an error if a process cannot be started.
-    pub(in crate::cli::check) fn run(
-        &self,
-        work: &Work,
-        progress: &Progress,
-    ) -> Result<ExplorerTally, CliError> {
+    pub(super) fn run(&self, work: &Work, progress: &Progress) -> Result<ExplorerTally, CliError> {
         let processes = rayon::current_num_threads();
         let enough = AtomicBool::new(false);
         thread::scope(|scope| {

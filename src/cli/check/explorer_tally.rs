@@ -4,26 +4,20 @@ use std::collections::BTreeMap;
 
 use toposlam_model::{
     check::{KeptStart, Tally, WorstStart},
-    world::Action,
+    marker::Marker,
 };
 
-use super::{
-    fault::ExplorerFault,
-    run::{EndedRun, ExplorerStart},
-};
-use crate::cli::{
-    check::line::{FailedRun, FailureLine, SizeLine},
-    text::capital,
-};
+use super::line::{FailedRun, FailureLine, SizeLine};
+use crate::cli::explorer::{EndedRun, ExplorerStart, ReportedRun};
 
 /// The first start of its kind is kept.
 impl KeptStart for FailureLine {}
 
 #[derive(Default)]
-pub(in crate::cli::check) struct ExplorerTally {
+pub(super) struct ExplorerTally {
     /// The counts. Certificates are those of the starts that were mapped correctly. Of the others, those on which a
     /// limit was reached are unknown.
-    pub(in crate::cli::check) counts: Tally<Option<WorstStart>, Option<FailureLine>>,
+    pub(super) counts: Tally<Option<WorstStart>, Option<FailureLine>>,
     /// The first start on which a limit was reached.
     limit: Option<FailureLine>,
     /// The number of starts for each name of a fault.
@@ -43,10 +37,10 @@ impl ExplorerTally {
         stderr: String,
     ) {
         let ExplorerStart { graph, facing, certificate, .. } = *start;
-        let EndedRun { moves, actions, result } = run;
+        let moves = run.moves;
         let counts = &mut self.counts;
         counts.starts += 1;
-        let Err(fault) = result else {
+        let Err(fault) = &run.result else {
             counts.mapped += 1;
             counts.count_certificate(certificate);
             let worst = WorstStart { graph: graph.clone(), facing, moves };
@@ -57,7 +51,12 @@ impl ExplorerTally {
         self.processes_ended += u64::from(fault.ends_process());
         counts.unknown += u64::from(fault.is_limit());
         let first = if fault.is_limit() { &mut self.limit } else { &mut counts.failure };
-        first.get_or_insert_with(|| unmapped(explorer, start, &fault, (moves, actions), stderr));
+        if first.is_none() {
+            let name = fault.name().to_owned();
+            let about = format!("The explorer {explorer} does not map it: {name}");
+            let run = FailedRun::Explorer(ReportedRun::new(run, stderr));
+            *first = Some(FailureLine::new(name, Some(moves), &about, (graph, facing), run));
+        }
     }
 
     pub(super) fn merge(&mut self, later: Self) {
@@ -70,33 +69,18 @@ impl ExplorerTally {
         self.limit = self.limit.take().or(later.limit);
     }
 
-    pub(in crate::cli::check) fn line(&self, line: SizeLine, explorer: &str) -> SizeLine {
+    /// The line of the counts, in which a guess has the other world.
+    pub(super) fn line(&self, line: SizeLine, explorer: &str, marker: &dyn Marker) -> SizeLine {
+        let failure = self.counts.failure.clone();
         let line = SizeLine {
             explorer: Some(explorer.to_owned()),
             unknown: Some(self.counts.unknown),
             causes: Some(self.causes.clone()),
             stopped: Some(self.stopped),
-            failure: self.counts.failure.clone(),
+            failure: failure.map(|failure| failure.explained(marker)),
             limit: self.limit.clone(),
             ..line
         };
         line.with_counts(&self.counts)
     }
-}
-
-fn unmapped(
-    explorer: &str,
-    start: &ExplorerStart,
-    fault: &ExplorerFault,
-    (moves, actions): (u64, Vec<Action>),
-    stderr: String,
-) -> FailureLine {
-    let about = format!("The explorer {explorer} does not map it: {}", fault.name());
-    let run = FailedRun::Explorer {
-        message: capital(&format!("the explorer {fault}")),
-        last_actions: actions,
-        stderr,
-    };
-    let start = (start.graph, start.facing);
-    FailureLine::new(fault.name().to_owned(), Some(moves), &about, start, run)
 }

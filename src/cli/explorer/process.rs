@@ -35,9 +35,9 @@ const TO_END: Duration = Duration::from_secs(1);
 const LOOK: Duration = Duration::from_millis(50);
 
 #[derive(Clone, Debug)]
-pub(in crate::cli::check) struct ExplorerCommand {
+pub(in crate::cli) struct ExplorerCommand {
     /// As on the command line.
-    pub(in crate::cli::check) text: String,
+    pub(in crate::cli) text: String,
     words: Vec<String>,
 }
 
@@ -57,11 +57,11 @@ impl FromStr for ExplorerCommand {
 impl ExplorerCommand {
     /// The explorer's file: the first file that the command names by a relative path. An interpreter has an absolute path,
     /// or is found by its name.
-    pub(in crate::cli::check) fn file(&self) -> Option<&Path> {
+    pub(in crate::cli) fn file(&self) -> Option<&Path> {
         self.words.iter().map(Path::new).find(|path| path.is_relative() && path.is_file())
     }
 
-    pub(super) fn start(&self) -> Result<ExplorerProcess, CliError> {
+    pub(in crate::cli) fn start(&self) -> Result<ExplorerProcess, CliError> {
         let mut words = self.words.iter();
         let program = words.next().map_or("", String::as_str);
         let mut command = Command::new(program);
@@ -89,7 +89,7 @@ impl ExplorerCommand {
     }
 }
 
-pub(super) struct ExplorerProcess {
+pub(in crate::cli) struct ExplorerProcess {
     running: RunningProgram,
     /// `None` after the end of its input.
     requests: Option<Sender<String>>,
@@ -134,7 +134,7 @@ impl ExplorerProcess {
     }
 
     /// Ends the process and returns the end of its standard error.
-    pub(super) fn end(self) -> String {
+    pub(in crate::cli) fn end(self) -> String {
         let Self { running, requests, received, errors, ended } = self;
         drop((running, requests, received));
         // Another program may keep it open.
@@ -145,7 +145,7 @@ impl ExplorerProcess {
     }
 
     /// Ends its input, and the process if it does not end soon.
-    pub(super) fn finish(mut self) {
+    pub(in crate::cli) fn finish(mut self) {
         self.requests = None;
         self.running.wait(TO_END);
     }

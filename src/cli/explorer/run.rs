@@ -1,13 +1,11 @@
 //! One run of an explorer that is another program, from one start, and its judgement.
 
-use std::collections::VecDeque;
-
 use toposlam_model::{
     ambiguity::Comparison,
     check::{determines_world, judge_map},
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::Candidate,
-    mapping::Flaw,
+    mapping::{ExploredMap, Flaw},
     marker::Marker,
     percept::Door,
     world::{Action, GraphWorld},
@@ -20,74 +18,70 @@ use super::{
     protocol::{ExplorerAnswer, ReportedMap, percept_line},
 };
 
-/// The last actions that are kept for the report.
-const LAST_ACTIONS: usize = 20;
-
 /// A start, with the length of its certificate if the marker is directional.
 #[derive(Clone, Copy)]
-pub(super) struct ExplorerStart<'g> {
-    pub(super) graph: &'g EmbeddedGraph,
-    pub(super) facing: Dart,
-    pub(super) marker: &'static dyn Marker,
-    pub(super) certificate: Option<u64>,
+pub(in crate::cli) struct ExplorerStart<'g> {
+    pub(in crate::cli) graph: &'g EmbeddedGraph,
+    pub(in crate::cli) facing: Dart,
+    pub(in crate::cli) marker: &'static dyn Marker,
+    pub(in crate::cli) certificate: Option<u64>,
 }
 
-pub(super) struct EndedRun {
-    pub(super) moves: u64,
-    pub(super) actions: Vec<Action>,
+pub(in crate::cli) struct EndedRun {
+    pub(in crate::cli) moves: u64,
+    pub(in crate::cli) actions: Vec<Action>,
+    /// The map that was returned, if it is an embedded graph.
+    pub(in crate::cli) map: Option<ExploredMap<'static>>,
     /// Whether the map and the pose are right.
-    pub(super) result: Result<(), ExplorerFault>,
+    pub(in crate::cli) result: Result<(), ExplorerFault>,
 }
 
 impl ExplorerStart<'_> {
     /// Runs the explorer and judges its answer. `None` if the check is to stop.
-    pub(super) fn run(
+    pub(in crate::cli) fn run(
         &self,
         process: &mut ExplorerProcess,
         limits: ExplorerLimits,
         candidate: &mut Candidate,
     ) -> Option<EndedRun> {
         let mut world = GraphWorld::with_marker(self.graph, self.marker, self.facing);
-        let mut last = VecDeque::with_capacity(LAST_ACTIONS + 1);
-        let mut doors = Vec::new();
-        let mut count = 0;
+        let mut actions = Vec::new();
+        let mut map = None;
         let result = loop {
             let line = process.ask(percept_line(world.sensed()), limits.timeout)?;
             let action = match line.and_then(|line| ExplorerAnswer::from_line(&line)) {
                 Ok(ExplorerAnswer::Act(action)) => action,
-                Ok(ExplorerAnswer::Done(map)) => break self.judge(&map, &world, &doors, candidate),
+                Ok(ExplorerAnswer::Done(reported)) => match reported.explored() {
+                    Ok(explored) => {
+                        let map = map.insert(explored);
+                        break self.judge((&reported, map), &world, &actions, candidate);
+                    }
+                    Err(fault) => break Err(fault),
+                },
                 Ok(ExplorerAnswer::GiveUp(reason)) => break Err(ExplorerFault::GaveUp { reason }),
                 Err(fault) => break Err(fault),
             };
-            if count == limits.moves {
+            if actions.len() as u64 == limits.moves {
                 break Err(ExplorerFault::OutOfMoves { limit: limits.moves });
             }
-            count += 1;
-            last.push_back(action);
-            if last.len() > LAST_ACTIONS {
-                last.pop_front();
-            }
+            actions.push(action);
             if let Err(refused) = world.act(action) {
                 break Err(ExplorerFault::RefusedAction { refused });
             }
-            if let Action::Take(door) = action {
-                doors.push(door);
-            }
         };
-        Some(EndedRun { moves: world.moves(), actions: last.into(), result })
+        Some(EndedRun { moves: world.moves(), actions, map, result })
     }
 
-    /// Judges the map and the robot's pose in it, after a walk through `doors`.
+    /// Judges the map and the robot's pose in it, after these actions.
     fn judge(
         &self,
-        reported: &ReportedMap,
+        (reported, map): (&ReportedMap, &ExploredMap),
         world: &GraphWorld<&dyn Marker>,
-        doors: &[Door],
+        actions: &[Action],
         candidate: &mut Candidate,
     ) -> Result<(), ExplorerFault> {
-        let map = reported.explored()?;
         let Self { graph, facing, .. } = *self;
-        match judge_map(&map, (graph, facing), world.pose(), candidate) {
+        match judge_map(map, (graph, facing), world.pose(), candidate) {
             Ok(_) => {}
             Err(Flaw::WrongPose { truly, .. }) => {
                 let bijection = candidate.of_starts((&map.graph, map.facing), (graph, facing));
@@ -102,8 +96,8 @@ impl ExplorerStart<'_> {
                 return Err(ExplorerFault::WrongMap { difference });
             }
         }
-        match determines_world((graph, facing), self.marker, doors) {
-            Some(false) => Err(ExplorerFault::Guessed { moves: world.moves() }),
+        match determines_world((graph, facing), self.marker, &doors_of(actions)) {
+            Some(false) => Err(ExplorerFault::Guessed),
             Some(true) | None => Ok(()),
         }
     }
@@ -126,4 +120,13 @@ impl ExplorerStart<'_> {
         };
         format!("; {after}, the map has {there}, and the world {here}")
     }
+}
+
+/// The doors that were taken.
+pub(in crate::cli) fn doors_of(actions: &[Action]) -> Vec<Door> {
+    let door = |action: &Action| match action {
+        Action::Take(door) => Some(*door),
+        Action::PickUp | Action::Drop => None,
+    };
+    actions.iter().filter_map(door).collect()
 }

@@ -1,28 +1,25 @@
-//! `toposlam check --explorer PROGRAM`: checks an explorer that is another program, in any language. It
-//! speaks JSON lines: docs/protocol.md.
+//! An explorer that is another program, in any language: `--explorer PROGRAM` of `check` and `explore`. It speaks JSON
+//! lines: docs/protocol.md.
 
 mod fault;
 mod process;
 mod protocol;
+mod reported_run;
 mod run;
-mod sweep;
-mod tally;
 
 use std::time::Duration;
 
-pub(super) use process::ExplorerCommand;
-pub(super) use sweep::ExplorerSweep;
+pub(super) use fault::ExplorerFault;
+pub(super) use process::{ExplorerCommand, ExplorerProcess};
+pub(super) use reported_run::ReportedRun;
+pub(super) use run::{EndedRun, ExplorerStart};
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Your own explorer")]
 pub(super) struct ExplorerOptions {
-    /// Check this program instead of an algorithm: a command, as in "python3 mine.py". It reads percepts
-    /// and writes doors and a map, as JSON lines (docs/protocol.md); --threads processes run at once
-    #[arg(
-        long,
-        value_name = "COMMAND",
-        conflicts_with_all = ["algorithm", "choices", "shard", "estimate", "journal"]
-    )]
+    /// Run this program instead of an algorithm: a command, as in "python3 mine.py". It reads percepts and writes
+    /// doors and a map, as JSON lines (docs/protocol.md)
+    #[arg(long, value_name = "COMMAND")]
     pub(super) explorer: Option<ExplorerCommand>,
 
     /// The most seconds for each answer of the explorer, moves with pick-ups and drops in a run, or runs that
@@ -43,9 +40,9 @@ enum ExplorerLimit {
 /// All limits on an explorer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ExplorerLimits {
-    timeout: Duration,
-    moves: u64,
-    restarts: u64,
+    pub(super) timeout: Duration,
+    pub(super) moves: u64,
+    pub(super) restarts: u64,
 }
 
 impl ExplorerOptions {

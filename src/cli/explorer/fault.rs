@@ -7,7 +7,7 @@ use crate::cli::text::counted;
 
 /// What is wrong with a run. Its message is a clause without a subject: the explorer.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub(super) enum ExplorerFault {
+pub(in crate::cli) enum ExplorerFault {
     #[error("wrote `{line}`, which is not JSON: {cause}")]
     NotJson { line: String, cause: String },
     #[error("wrote `{line}`, which is not an answer: {cause}")]
@@ -42,10 +42,10 @@ pub(super) enum ExplorerFault {
     WrongPose { believed: String, truly: String },
     /// It returned a right map after a walk that does not determine the world.
     #[error(
-        "guessed: it returned the right map after {}, but there is another world in which it makes the \
-         same walk, and returns the same map", counted(*moves as usize, "move")
+        "guessed: its map is right, but there is another world in which it makes the same walk, and returns the same \
+         map"
     )]
-    Guessed { moves: u64 },
+    Guessed,
     #[error(
         "did not read a percept and answer it within {seconds} s; does it write a line for each percept, and flush \
          its output?"
@@ -73,8 +73,11 @@ fn refusal(refused: &RefusedAction) -> String {
 const MAX_MOVES: &str = "max-moves";
 
 impl ExplorerFault {
+    /// The name of a guess.
+    pub(in crate::cli) const GUESSED: &str = "guessed";
+
     /// Its name in `--json` and in the table of causes.
-    pub(super) fn name(&self) -> &'static str {
+    pub(in crate::cli) fn name(&self) -> &'static str {
         match self {
             Self::NotJson { .. } => "not-json",
             Self::NotAnAnswer { .. } => "not-an-answer",
@@ -92,19 +95,19 @@ impl ExplorerFault {
             Self::InvalidMap { .. } => "invalid-map",
             Self::WrongMap { .. } => "wrong-map",
             Self::WrongPose { .. } => "wrong-pose",
-            Self::Guessed { .. } => "guessed",
+            Self::Guessed => Self::GUESSED,
             Self::TimedOut { .. } => "timeout",
             Self::OutOfMoves { .. } => MAX_MOVES,
         }
     }
 
     /// Whether a limit was reached. Then it is not known whether the explorer would have mapped the start.
-    pub(super) fn is_limit(&self) -> bool {
+    pub(in crate::cli) fn is_limit(&self) -> bool {
         matches!(self, Self::TimedOut { .. }) || self.name() == MAX_MOVES
     }
 
     /// Whether the run ended without the explorer's last answer, so that the process cannot begin another.
-    pub(super) fn ends_process(&self) -> bool {
+    pub(in crate::cli) fn ends_process(&self) -> bool {
         !matches!(
             self,
             Self::GaveUp { .. }
@@ -112,7 +115,7 @@ impl ExplorerFault {
                 | Self::InvalidMap { .. }
                 | Self::WrongMap { .. }
                 | Self::WrongPose { .. }
-                | Self::Guessed { .. }
+                | Self::Guessed
         )
     }
 }
