@@ -71,6 +71,38 @@ fn the_page_of_a_run_follows_it_to_its_end() {
     );
 }
 
+/// Explorers on a chain of five edges: each goes in by three doors. One then returns a chain of two edges, one that of
+/// five, and one takes a door that does not exist.
+#[test]
+#[ignore = "it takes long: `.ci/run`"]
+fn the_page_of_an_explorer_steps_through_its_run() {
+    let folder = output::folder("explorers");
+    let ends = [
+        ("wrong", r#"{"map":[[[1,0]],[[0,0],[2,0]],[[1,1]]],"pose":[2,0]}"#),
+        (
+            "guessed",
+            r#"{"map":[[[1,0]],[[0,0],[2,0]],[[1,1],[3,0]],[[2,1],[4,0]],[[3,1],[5,0]],[[4,1]]],"pose":[3,0]}"#,
+        ),
+        ("alone", r#"{"door":7}"#),
+    ];
+    let pages = ends.map(|(kind, answer)| {
+        let script = folder.join(format!("{kind}.sh"));
+        let doors = [0, 1, 1].map(|door| format!("read line; echo '{{\"door\":{door}}}'\n"));
+        fs::write(&script, format!("{}read line; echo '{answer}'; read line\n", doors.concat())).unwrap();
+        let page = folder.join(format!("{kind}.html"));
+        let output = program()
+            .args(["check", "--from", "worlds/chain-5.toml", "--start", "v0:v1", "--explorer"])
+            .arg(format!("sh {}", script.display()))
+            .arg("--failed")
+            .arg(&page)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(1), "{output:?}");
+        format!("{kind}={}", page.display())
+    });
+    browser::open("explorer_page.mjs", &pages);
+}
+
 #[test]
 #[ignore = "it takes long: `.ci/run`"]
 fn the_page_of_a_report_opens_and_leads_to_its_events() {

@@ -6,6 +6,7 @@ mod conformance;
 mod counterexample;
 mod error;
 mod exploration;
+mod explorer_run;
 mod log;
 mod long_work;
 mod own_marker;
@@ -27,6 +28,8 @@ mod _core {
     use super::counterexample::counterexample;
     #[pymodule_export]
     use super::exploration::{certificate, explore};
+    #[pymodule_export]
+    use super::explorer_run::{explorer_run, other_world};
     #[pymodule_export]
     use super::log::{LogReader, log_picture};
     #[pymodule_export]

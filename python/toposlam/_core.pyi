@@ -18,8 +18,10 @@ __all__ = [
     "count_starts",
     "counterexample",
     "explore",
+    "explorer_run",
     "is_name",
     "log_picture",
+    "other_world",
     "visit_starts",
 ]
 
@@ -165,6 +167,16 @@ def counterexample(
 def is_name(text: str) -> bool: ...
 def explore(world: World, facing: int, algorithm: str, max_darts: int) -> _Explored: ...
 def certificate(world: World, facing: int) -> list[int]: ...
+def other_world(world: World, facing: int, marker: str, doors: list[int]) -> tuple[World, bool] | None: ...
+
+class _ExplorerRun(TypedDict):
+    story: str
+    picture: str
+    page: str
+
+def explorer_run(
+    world: World, marker: str, actions: list[str], beside: tuple[World, str] | None, ending: str
+) -> _ExplorerRun: ...
 def visit_starts(class_: str, edges: int, index: int, of: int, visit: Callable[[Start], object]) -> None: ...
 def count_starts(class_: str, edges: int) -> int: ...
 def log_picture(reader: LogReader, title: str) -> str: ...

@@ -27,50 +27,16 @@ from .errors import (
     WorkerLostError,
 )
 from .explorers import Clock, Explorer, check_explorer, judged
+from .failures import Failure, failure_of
 from .limits import MAX_MOVES, SECONDS, check_limit, check_run_limits, check_unused
 from .markers import MARKERS
 from .progress import Advance, bar
-from .worlds import Picture, World
+from .worlds import World
 
 CLASSES = ("multigraph", "simple", "corridor", "planar")
 """The names of the classes of worlds."""
 
 Edges = Union[int, Iterable[int]]
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A start on which an explorer failed, or reached a limit."""
-
-    world: World
-    """The world, with the start."""
-    error: ExplorerError
-    """What is wrong. Its class is the cause."""
-    actions: tuple[int | str, ...]
-    """What the robot did."""
-    number: int
-    """The number of the start among those with as many edges."""
-    marker: str
-    """The kind of marker of the robot."""
-
-    @property
-    def moves(self) -> int:
-        """The number of moves made."""
-        return sum(isinstance(action, int) for action in self.actions)
-
-    def draw(self) -> Picture:
-        """The world, with what is wrong below it."""
-        text = self.error.message
-        moves = f"after {self.moves} move{'' if self.moves == 1 else 's'}"
-        caption = f"{moves}: {text if len(text) <= 90 else text[:87] + '...'}"
-        verdict = "not known" if isinstance(self.error, LimitError) else "fails"
-        return self.world.draw(title=f"{verdict} on {self.world.name}", caption=caption, marker=self.marker)
-
-    def _repr_svg_(self) -> str:
-        return self.draw().svg
-
-    def __str__(self) -> str:
-        return str(self.error)
 
 
 @dataclass(frozen=True)
@@ -368,9 +334,8 @@ def _size(
 def _failure(question: _Question, start: _core.Start, robot: _core.Robot, error: ExplorerError) -> Failure:
     name = f"{question.cls}-{start.edges}-{start.number}"
     core = start.world(name)
-    error.start = f"{name} v0:{core.start_text(0).split(':', 1)[1]}"
-    error.moves = robot.moves
-    return Failure(World._of(core), error, tuple(robot.actions), start.number, question.marker)
+    text = f"{name} v0:{core.start_text(0).split(':', 1)[1]}"
+    return failure_of(World._of(core), text, error, robot, question.marker, start.number)
 
 
 def check(

@@ -6,7 +6,11 @@ which it failed and the number of moves that it had made.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .failures import Failure
+    from .worlds import World
 
 
 class ToposlamError(Exception):
@@ -140,13 +144,16 @@ class MarkerFunctionError(ToposlamError):
 class ExplorerError(ToposlamError):
     """An explorer failed.
 
-    `start` is the start, as a text, and `moves` the number of moves made by then.
+    `start` is the start, as a text, and `moves` the number of moves made by then. An error that `explore`
+    raises has the whole run, its `failure`.
     """
 
     def __init__(self, message: str, /, start: str | None = None, moves: int | None = None) -> None:
         super().__init__(message)
         self.start = start
         self.moves = moves
+        self.failure: Failure | None = None
+        self.answer: object = None
 
     def __str__(self) -> str:
         place = [] if self.start is None else [f"start {self.start}"]
@@ -155,7 +162,7 @@ class ExplorerError(ToposlamError):
         return f"{', '.join(place)}: {self.message}" if place else self.message
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.message, self.start, self.moves)
+        return type(self), (self.message, self.start, self.moves), self.__dict__
 
 
 class NotAnExplorerError(ExplorerError, TypeError):
@@ -213,7 +220,28 @@ class WrongPoseError(ExplorerError):
 
 class GuessedError(ExplorerError):
     """An explorer's map is right, and its walk does not determine the world: it makes the same walk in
-    another world, and returns the same map."""
+    another world, and returns the same map. `other` is that world."""
+
+    _walk: tuple[World, str, tuple[int | str, ...]] | None = None
+    _found: tuple[World | None, bool] | None = None
+
+    def _search(self) -> tuple[World | None, bool]:
+        if self._found is None:
+            from .worlds import other_world
+
+            self._found = (None, False) if self._walk is None else other_world(*self._walk)
+        return self._found
+
+    @property
+    def other(self) -> World | None:
+        """The smallest other world with the same run; its start is that of the run. None while the run is
+        not known."""
+        return self._search()[0]
+
+    @property
+    def other_is_smallest(self) -> bool:
+        """Whether the search has shown that no smaller one exists. It ends after a number of steps."""
+        return self._search()[1]
 
 
 class NotPicklableError(ToposlamError, TypeError):

@@ -122,6 +122,7 @@ def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Cl
 
     The run ends with the first action that is not possible, even if the explorer catches the exception.
     """
+    answer = None
     try:
         answer = clock.run(explorer, robot)
         wrong = None if robot.refusal is not None else judge(answer, start, robot)
@@ -135,7 +136,10 @@ def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Cl
         wrong = _raised(cause)
     finally:
         robot.end_run()
-    return wrong if robot.refusal is None else robot.refusal
+    wrong = wrong if robot.refusal is None else robot.refusal
+    if wrong is not None:
+        wrong.answer = answer
+    return wrong
 
 
 def _raised(cause: BaseException) -> RaisedError:

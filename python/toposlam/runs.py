@@ -10,6 +10,7 @@ from . import _core
 from .comparisons import Action
 from .errors import UnknownMarkerError
 from .explorers import Clock, Explorer, check_explorer, judged
+from .failures import failure_of
 from .limits import MAX_MOVES, SECONDS, check_limit, check_run_limits, check_unused
 from .markers import MARKERS
 from .worlds import Dart, Picture, World, world_of
@@ -113,8 +114,8 @@ def _explored(world: World, explorer: Explorer, marker: str, max_moves: int, sec
     with Clock(seconds) as clock:
         error = judged(explorer, start, robot, clock)
     if error is not None:
-        error.start = f"{world.name} {world._core.start_text(world.facing())}"
-        error.moves = robot.moves
+        text = f"{world.name} {world._core.start_text(world.facing())}"
+        error.failure = failure_of(world, text, error, robot, marker, 0)
         raise error
     name = getattr(explorer, "__name__", type(explorer).__name__)
     return Run(world, name, marker, robot.moves, tuple(robot.actions), None, None, "")

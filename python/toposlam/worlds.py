@@ -442,6 +442,14 @@ def world_of(value: object) -> World:
     )
 
 
+def other_world(world: World, marker: str, actions: tuple[int | str, ...]) -> tuple[World | None, bool]:
+    """The smallest other world in which a robot that does the same senses the same, and whether it is known to be
+    the smallest."""
+    doors = [action for action in actions if isinstance(action, int)]
+    found = _core.other_world(world._core, world.facing(), marker, doors)
+    return (None, False) if found is None else (World._of(found[0]), found[1])
+
+
 def _rebuilt(text: str, name: str, vertices: dict[Hashable, str]) -> World:
     """A world from a world file in JSON, for pickle."""
     (core,) = _core.World.read(Path(), text.encode())
