@@ -95,7 +95,7 @@ impl OptimumSearch {
     /// Returns an error if they cannot be enumerated.
     pub(crate) fn new(class: Class, edges: usize) -> Result<Self, Box<dyn Error>> {
         let graphs = Enumeration::new(Each::Start, class, edges)?.graphs();
-        let starts = graphs.into_iter().map(PossibleStart::new).collect();
+        let starts = graphs.map(PossibleStart::new).collect();
         Ok(Self { starts, known: HashMap::new() })
     }
 

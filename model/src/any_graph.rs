@@ -72,7 +72,7 @@ pub(crate) fn world(name: &str) -> NamedWorld {
 
 /// Every start of a class with a number of edges. Its facing dart is dart 0.
 pub(crate) fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
-    Enumeration::new(Each::Start, class, edges).unwrap().graphs()
+    Enumeration::new(Each::Start, class, edges).unwrap().graphs().collect()
 }
 
 /// Stops what it watches at the question with this number, from 1.

@@ -4,7 +4,7 @@ use std::{collections::HashSet, ops::ControlFlow};
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, EnumeratedGraph, Enumeration, SizeError},
+    enumerate::{Class, Each, EnumeratedGraph, Enumeration, SearchEnd, SizeError},
     isomorphism::{canonical, code},
 };
 
@@ -65,6 +65,37 @@ fn counts_are_those_of_the_encyclopedia_of_integer_sequences() {
     for (sequence, each, class, among, counts) in cases {
         assert_eq!(count(each, class, counts.len(), among), counts, "{sequence}");
     }
+}
+
+#[test]
+fn graphs_are_made_one_after_the_other_in_the_order_of_the_visits() {
+    for class in Class::ALL {
+        for each in [Each::Start, Each::World] {
+            let mut visited = Vec::new();
+            for_each(each, class, 4, |found| visited.push(found.graph.clone()));
+            let mut graphs = Enumeration::new(each, class, 4).unwrap().graphs();
+            assert_eq!(graphs.by_ref().collect::<Vec<_>>(), visited);
+            assert_eq!(graphs.next(), None);
+        }
+    }
+}
+
+/// With 32 edges, the most, there are more than 10^40 starts.
+#[test]
+fn the_first_graphs_of_many_are_found_in_a_few_steps_and_a_search_can_go_on() {
+    let mut graphs = Enumeration::new(Each::Start, Class::Multigraph, 32).unwrap().graphs();
+    let mut found = Vec::new();
+    let mut paused = 0;
+    while found.len() < 100 {
+        match graphs.search(10) {
+            SearchEnd::Found => found.push(graphs.graph().clone()),
+            SearchEnd::Paused => paused += 1,
+            SearchEnd::Finished => unreachable!("there are more"),
+        }
+    }
+    assert!((1..100).contains(&paused), "{paused}");
+    let at_once = Enumeration::new(Each::Start, Class::Multigraph, 32).unwrap().graphs().take(100);
+    assert!(at_once.eq(found));
 }
 
 /// A214816: maps of any genus, mirror images counted once.

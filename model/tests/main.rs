@@ -15,7 +15,7 @@ use toposlam_model::{
 
 /// Every start of a class with a number of edges. Its facing dart is dart 0.
 fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
-    Enumeration::new(Each::Start, class, edges).unwrap().graphs()
+    Enumeration::new(Each::Start, class, edges).unwrap().graphs().collect()
 }
 
 /// The text of a file of the workspace.

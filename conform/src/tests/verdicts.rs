@@ -350,7 +350,7 @@ proptest! {
         change in 0_u32..9,
     ) {
         let starts: Vec<EmbeddedGraph> =
-            Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap().graphs();
+            Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap().graphs().collect();
         let mut world = GraphWorld::new(start.get(&starts), Dart(0));
         let mut kinds = vec![TraceEventKind::Percept(world.sensed())];
         for step in walk {

@@ -5,7 +5,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Answer, Class, Each, EnumeratedGraph};
+use super::{Answer, Answers, Class, Each, EnumeratedGraph};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// The most edges that a draft can have: its darts are the bits of a `u64`.
@@ -57,6 +57,71 @@ pub(crate) struct Draft {
     last_in_face: [u8; DARTS],
     /// The same as an embedded graph with free darts. It lacks an edge that is only tried.
     pub(super) graph: EmbeddedGraph,
+}
+
+/// The decisions that led from a draft to one with more edges, and the answers that are not tried yet.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Decisions {
+    made: Vec<Decision>,
+    /// Whether the last answers of all decisions have been visited, and are to be changed.
+    goes_back: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Decision {
+    dart: Option<Dart>,
+    answer: Option<Answer>,
+    untried: Answers,
+    /// The rivals of the draft before.
+    rivals: u64,
+}
+
+/// The end of a [search](Decisions::search).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SearchEnd {
+    Found,
+    /// As many steps as were allowed are made. The search can go on.
+    Paused,
+    /// There is nothing more.
+    Finished,
+}
+
+impl Decisions {
+    /// Changes the draft, which must be as this left it, to the next one with `edges` edges. When it is finished,
+    /// the draft is what it was at first. A step changes one answer.
+    pub(super) fn search(&mut self, draft: &mut Draft, edges: usize, steps: u64) -> SearchEnd {
+        for _ in 0..steps {
+            if !self.goes_back {
+                if draft.edges == edges {
+                    self.goes_back = true;
+                    return SearchEnd::Found;
+                }
+                let dart = draft.lowest_free();
+                // The start vertex comes first.
+                if dart.is_some() || draft.vertices == 0 {
+                    let (untried, rivals) = (draft.answers(dart), draft.rivals);
+                    self.made.push(Decision { dart, answer: None, untried, rivals });
+                }
+            }
+            let Some(last) = self.made.last_mut() else {
+                self.goes_back = true;
+                return SearchEnd::Finished;
+            };
+            if let Some(answer) = last.answer.take() {
+                draft.rivals = last.rivals;
+                draft.undo(last.dart, answer);
+            }
+            if let Some(answer) = last.untried.take_first() {
+                draft.decide(last.dart, answer);
+                last.answer = Some(answer);
+                self.goes_back = !draft.may_be_least();
+            } else {
+                self.made.pop();
+                self.goes_back = true;
+            }
+        }
+        SearchEnd::Paused
+    }
 }
 
 /// The word of an edge to a new vertex of some degree; and the degree, from the word.
@@ -126,25 +191,14 @@ impl Draft {
         edges: usize,
         visit: &mut impl FnMut(&Self) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        if self.edges == edges {
-            return visit(self);
-        }
-        // The start vertex comes first.
-        let dart = self.lowest_free();
-        if dart.is_none() && self.vertices > 0 {
-            return ControlFlow::Continue(());
-        }
-        let rivals = self.rivals;
-        let mut answers = self.answers(dart);
-        while let Some(answer) = answers.take_first() {
-            self.decide(dart, answer);
-            if self.may_be_least() {
-                self.grow_to(edges, visit)?;
+        let mut decisions = Decisions::default();
+        loop {
+            match decisions.search(self, edges, u64::MAX) {
+                SearchEnd::Found => visit(self)?,
+                SearchEnd::Paused => {}
+                SearchEnd::Finished => return ControlFlow::Continue(()),
             }
-            self.rivals = rivals;
-            self.undo(dart, answer);
         }
-        ControlFlow::Continue(())
     }
 
     fn highest_degree(&self) -> usize {

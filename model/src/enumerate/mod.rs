@@ -18,11 +18,12 @@ use thiserror::Error;
 pub(crate) use answers::{Answer, Answers};
 pub use class::{Class, UnknownClass};
 pub(crate) use draft::Draft;
+pub use draft::SearchEnd;
 pub(crate) use watch::in_parts;
 pub use watch::{Interrupted, MOST_THREADS, Watch, threads};
 
 use crate::embedded_graph::EmbeddedGraph;
-use draft::{MAX_EDGES, PREFIX_EDGES, Prefix};
+use draft::{Decisions, MAX_EDGES, PREFIX_EDGES, Prefix};
 
 /// The objects that are enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -99,14 +100,39 @@ impl Enumeration {
         whole.grow_to(self.edges, &mut |draft| draft.show(visit))
     }
 
-    /// All graphs, in order, in memory.
-    pub fn graphs(&self) -> Vec<EmbeddedGraph> {
-        let mut graphs = Vec::new();
-        let _: ControlFlow<()> = self.for_each(&mut |found| {
-            graphs.push(found.graph.clone());
-            ControlFlow::Continue(())
-        });
-        graphs
+    /// All graphs, one after the other, in order.
+    pub fn graphs(&self) -> EnumeratedGraphs {
+        let draft = Draft::empty(self.each, self.class, self.edges);
+        EnumeratedGraphs { draft, decisions: Decisions::default(), edges: self.edges }
+    }
+}
+
+/// The graphs of an enumeration. The next one is made when it is asked for.
+#[derive(Clone, Debug)]
+pub struct EnumeratedGraphs {
+    draft: Draft,
+    decisions: Decisions,
+    edges: usize,
+}
+
+impl EnumeratedGraphs {
+    /// Goes to the next graph. In the classes of simple graphs that may take long, so it makes at most this many
+    /// steps.
+    pub fn search(&mut self, steps: u64) -> SearchEnd {
+        self.decisions.search(&mut self.draft, self.edges, steps)
+    }
+
+    /// The graph that was [found](SearchEnd::Found) last.
+    pub fn graph(&self) -> &EmbeddedGraph {
+        self.draft.graph()
+    }
+}
+
+impl Iterator for EnumeratedGraphs {
+    type Item = EmbeddedGraph;
+
+    fn next(&mut self) -> Option<EmbeddedGraph> {
+        (self.search(u64::MAX) == SearchEnd::Found).then(|| self.graph().clone())
     }
 }
 
