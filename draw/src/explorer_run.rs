@@ -25,6 +25,8 @@ pub struct ExplorerRun<'a> {
     pub world: &'a NamedWorld,
     pub marker: &'a dyn Marker,
     pub actions: &'a [Action],
+    /// What the robot perceived, before the first action and after each, if that is not what the marker gives.
+    pub percepts: Option<&'a [String]>,
     /// What is shown beside the world, with the start that is that of the run.
     pub beside: Option<(Beside, &'a NamedWorld)>,
 }
@@ -74,6 +76,12 @@ impl<'a> ExplorerRun<'a> {
         self.beside.map_or_else(Vec::new, |(_, world)| self.robots_in(world))
     }
 
+    /// What the robot perceived at a step.
+    pub(crate) fn percept(&self, step: usize, robot: &PlacedRobot) -> String {
+        let own = self.percepts.and_then(|percepts| percepts.get(step)).cloned();
+        own.unwrap_or_else(|| robot.sensed().to_string())
+    }
+
     fn robots_in(&self, world: &'a NamedWorld) -> Vec<PlacedRobot<'a>> {
         let mut robot = GraphWorld::with_marker(&world.graph, self.marker, facing(world));
         let mut robots = vec![robot.clone()];
@@ -117,12 +125,14 @@ impl<'a> ExplorerRun<'a> {
             }
             let action = step.checked_sub(1).map(|before| self.actions[before].to_string());
             let action = action.unwrap_or_default();
-            writeln!(out, "  {step:>4}  {action:7}  {:width$}  {}", places[step], robot.sensed())?;
+            let (place, percept) = (&places[step], self.percept(step, robot));
+            writeln!(out, "  {step:>4}  {action:7}  {place:width$}  {percept}")?;
         }
         let Some((beside, world)) = self.beside else { return Ok(()) };
         writeln!(out)?;
         print_list(out, beside.title(), world)?;
-        if beside == Beside::ReturnedMap && !is_same_start(self.world, world) {
+        let is_wrong = beside == Beside::ReturnedMap && !is_same_start(self.world, world);
+        if is_wrong && self.percepts.is_none() {
             let text = match difference {
                 None => "The map explains all percepts of the run: it is a wrong guess.".to_owned(),
                 Some((step, Some(percept))) => {

@@ -48,14 +48,15 @@ pub(crate) fn other_world(
 }
 
 /// A run from the start of a world as a text, a picture and a page. `beside` is the map that the explorer returned
-/// ("map"), or another world with the same run ("smallest" or "other").
+/// ("map"), or another world with the same run ("smallest" or "other"). `percepts` are texts in place of those of
+/// the marker.
 #[pyfunction]
-#[pyo3(signature = (world, marker, actions, beside, ending))]
 pub(crate) fn explorer_run<'py>(
     py: Python<'py>,
     world: &CoreWorld,
     marker: &str,
     actions: Vec<String>,
+    percepts: Option<Vec<String>>,
     beside: Option<(PyRef<'py, CoreWorld>, String)>,
     ending: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -68,7 +69,13 @@ pub(crate) fn explorer_run<'py>(
         kind => Beside::OtherWorld { is_smallest: kind == "smallest" },
     };
     let beside = beside.as_ref().map(|(world, name)| (kind(name), &world.0));
-    let run = ExplorerRun { world: &world.0, marker, actions: &actions, beside };
+    let run = ExplorerRun {
+        world: &world.0,
+        marker,
+        actions: &actions,
+        percepts: percepts.as_deref(),
+        beside,
+    };
     guarded(py, || {
         let mut story = Vec::new();
         run.print(&mut story).map_err(|fault| error(py, "InternalError", fault))?;

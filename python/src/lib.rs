@@ -13,6 +13,7 @@ mod own_marker;
 mod percept;
 mod robot;
 mod starts;
+mod trail;
 mod world;
 
 /// The module `toposlam._core`.
@@ -37,7 +38,9 @@ mod _core {
     #[pymodule_export]
     use super::robot::Robot;
     #[pymodule_export]
-    use super::starts::{Start, count_starts, visit_starts};
+    use super::starts::{Start, Starts, count_starts, random_start};
+    #[pymodule_export]
+    use super::trail::Trail;
     #[pymodule_export]
     use super::world::{CoreWorld, is_name};
 

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use pyo3::prelude::*;
+use pyo3::{IntoPyObjectExt, prelude::*};
 use toposlam_model::{
     check::determines_world,
     embedded_graph::{Dart, EmbeddedGraph},
-    marker::Marker,
+    marker::{Marker, NoMarker},
     percept::{Door, Percept as ModelPercept},
     world::{Action, GraphWorld, RefusedAction, State},
 };
@@ -22,6 +22,8 @@ use crate::{
 pub(crate) struct Robot {
     graph: Arc<EmbeddedGraph>,
     marker: &'static dyn Marker,
+    /// What it senses at each pose, if a function in Python computed that. Then there is no other marker.
+    percepts: Option<Vec<Py<PyAny>>>,
     facing: Dart,
     state: State,
     sensed: ModelPercept,
@@ -37,17 +39,26 @@ pub(crate) struct Robot {
 }
 
 impl Robot {
+    /// A robot at a start. `marker` is the name of a kind, or a list of what the robot senses at each pose.
     pub(crate) fn new(
         graph: Arc<EmbeddedGraph>,
-        marker: &'static dyn Marker,
         facing: Dart,
+        marker: &Bound<'_, PyAny>,
         bound: usize,
-    ) -> Self {
+    ) -> PyResult<Self> {
+        let py = marker.py();
+        let (marker, percepts) = match marker.extract::<Vec<Py<PyAny>>>() {
+            Ok(percepts) if percepts.len() == graph.dart_count() => {
+                (&NoMarker as &dyn Marker, Some(percepts))
+            }
+            _ => (named_marker(py, &marker.extract::<String>()?)?, None),
+        };
         let world = GraphWorld::with_marker(&graph, marker, facing);
         let (state, sensed) = (world.state(), world.sensed());
-        Self {
+        Ok(Self {
             graph,
             marker,
+            percepts,
             facing,
             state,
             sensed,
@@ -57,7 +68,7 @@ impl Robot {
             refusal: None,
             ends_at_refusal: false,
             is_ended: false,
-        }
+        })
     }
 
     /// A robot whose run ends with the first action that is not possible, whatever the explorer does then.
@@ -67,6 +78,9 @@ impl Robot {
 
     /// Whether the walk so far determines the world; `None` if that is not known.
     pub(crate) fn determines_world(&self) -> Option<bool> {
+        if self.percepts.is_some() {
+            return None;
+        }
         let door = |action: &Action| match action {
             Action::Take(door) => Some(*door),
             Action::PickUp | Action::Drop => None,
@@ -134,18 +148,20 @@ impl Robot {
         py: Python<'_>,
         world: &CoreWorld,
         facing: u32,
-        marker: &str,
+        marker: &Bound<'_, PyAny>,
         max_moves: usize,
     ) -> PyResult<Self> {
         let facing = world.dart(py, facing)?;
-        let marker = named_marker(py, marker)?;
-        Ok(Self::new(Arc::new(world.0.graph.clone()), marker, facing, max_moves))
+        Self::new(Arc::new(world.0.graph.clone()), facing, marker, max_moves)
     }
 
     /// What the robot senses where it is.
     #[getter]
-    fn percept(&self) -> Percept {
-        Percept(self.sensed)
+    fn percept(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        match &self.percepts {
+            Some(percepts) => Ok(percepts[self.state.pose.at()].clone_ref(py)),
+            None => Percept(self.sensed).into_py_any(py),
+        }
     }
 
     /// The number of moves made.
@@ -167,8 +183,9 @@ impl Robot {
     }
 
     /// Leaves by a door, and returns what the robot senses behind it.
-    fn go(&mut self, py: Python<'_>, door: &Bound<'_, PyAny>) -> PyResult<Percept> {
-        self.attempt(py, |robot| robot.take(py, door))
+    fn go(&mut self, py: Python<'_>, door: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+        self.attempt(py, |robot| robot.take(py, door))?;
+        self.percept(py)
     }
 
     /// Picks the marker up here, to carry it.
@@ -186,15 +203,16 @@ impl Robot {
         self.is_ended = true;
     }
 
-    fn __repr__(&self) -> String {
-        let (moves, sensed) = (self.moves, self.sensed);
-        format!("<Robot after {moves} move{}: {sensed}>", if moves == 1 { "" } else { "s" })
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let (moves, sensed) = (self.moves, self.percept(py)?);
+        let plural = if moves == 1 { "" } else { "s" };
+        Ok(format!("<Robot after {moves} move{plural}: {sensed}>"))
     }
 }
 
 impl Robot {
     /// Leaves by a door, which may be any value.
-    fn take(&mut self, py: Python<'_>, door: &Bound<'_, PyAny>) -> PyResult<Percept> {
+    fn take(&mut self, py: Python<'_>, door: &Bound<'_, PyAny>) -> PyResult<()> {
         let degree = self.sensed.degree;
         let number: i128 = door.extract().map_err(|_| {
             let kind = door.get_type();
@@ -209,7 +227,6 @@ impl Robot {
             let text = format!("door {number} was taken at a vertex with {degree} doors");
             return Err(error(py, "NoSuchDoorError", text));
         };
-        self.act(py, Action::Take(Door(door)))?;
-        Ok(Percept(self.sensed))
+        self.act(py, Action::Take(Door(door)))
     }
 }

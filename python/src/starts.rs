@@ -1,12 +1,14 @@
 //! Every start of a class, once, and the judgement of a map of it.
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::sync::Arc;
 
 use pyo3::prelude::*;
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
     check::judge_map,
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, Enumeration, Watch},
+    enumerate::{Class, Each, EnumeratedGraphs, Enumeration, SearchEnd, Watch},
     folding::certificate_length,
     format::named_world::NamedWorld,
     isomorphism::{Bijection, Candidate, isomorphism},
@@ -17,7 +19,7 @@ use crate::{
     error::{error, guarded, interrupted},
     long_work::run_watched,
     robot::Robot,
-    world::{CoreWorld, graph_of, named_marker},
+    world::{CoreWorld, graph_of},
 };
 
 /// A start: a world, and the robot's facing dart in it, which is dart 0.
@@ -33,12 +35,12 @@ const FACING: Dart = Dart(0);
 
 #[pymethods]
 impl Start {
-    /// The start of a world.
+    /// The start of a world, with this number.
     #[staticmethod]
-    fn of(py: Python<'_>, world: &CoreWorld, facing: u32) -> PyResult<Self> {
+    fn of(py: Python<'_>, world: &CoreWorld, facing: u32, number: u64) -> PyResult<Self> {
         let facing = world.dart(py, facing)?;
         let graph = toposlam_model::isomorphism::as_discovered(&world.0.graph, facing);
-        Ok(Self { graph: Arc::new(graph), number: 0 })
+        Ok(Self { graph: Arc::new(graph), number })
     }
 
     #[getter]
@@ -57,10 +59,10 @@ impl Start {
         CoreWorld(NamedWorld::discovered(name, "", &self.graph, FACING))
     }
 
-    /// A robot at the start. Its run ends with the first action that is not possible.
-    fn robot(&self, py: Python<'_>, marker: &str, max_moves: usize) -> PyResult<Robot> {
-        let marker = named_marker(py, marker)?;
-        Ok(Robot::new(self.graph.clone(), marker, FACING, max_moves).ending_at_refusal())
+    /// A robot at the start. Its run ends with the first action that is not possible. `marker` is a kind, or what the
+    /// robot senses at each pose.
+    fn robot(&self, marker: &Bound<'_, PyAny>, max_moves: usize) -> PyResult<Robot> {
+        Ok(Robot::new(self.graph.clone(), FACING, marker, max_moves)?.ending_at_refusal())
     }
 
     /// Judges a map: doors, the facing dart and the robot's pose in it. Returns None if it is right and the
@@ -124,59 +126,132 @@ impl Start {
     }
 }
 
-fn starts(py: Python<'_>, class: &str, edges: usize) -> PyResult<Enumeration> {
+fn enumeration(py: Python<'_>, each: &str, class: &str, edges: usize) -> PyResult<Enumeration> {
     let class: Class = class.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
-    Enumeration::new(Each::Start, class, edges).map_err(|cause| error(py, "SizeError", cause))
+    let each = if each == "world" { Each::World } else { Each::Start };
+    Enumeration::new(each, class, edges).map_err(|cause| error(py, "SizeError", cause))
 }
 
-/// Calls `visit` with each start of one shard, `index` of `of`, in order.
+/// The steps of a search after which signals are looked at.
+const PATIENCE: u64 = 65_536;
+
+/// The starts, or the worlds, each with its least start, of one shard, `index` of `of`. The next one is made when it is
+/// asked for.
+#[pyclass(module = "toposlam._core")]
+pub(crate) struct Starts {
+    graphs: EnumeratedGraphs,
+    next: u64,
+    index: u64,
+    of: u64,
+}
+
+#[pymethods]
+impl Starts {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        each: &str,
+        class_: &str,
+        edges: usize,
+        index: u64,
+        of: u64,
+    ) -> PyResult<Self> {
+        if index >= of {
+            return Err(error(py, "ShardError", format!("there is no shard {index} of {of}")));
+        }
+        let graphs = enumeration(py, each, class_, edges)?.graphs();
+        Ok(Self { graphs, next: 0, index, of })
+    }
+
+    fn __iter__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<Start>> {
+        loop {
+            match self.search(py) {
+                SearchEnd::Found => {
+                    let number = self.next - 1;
+                    let graph = Arc::new(self.graphs.graph().clone());
+                    return Ok(Some(Start { graph, number }));
+                }
+                SearchEnd::Paused => py.check_signals()?,
+                SearchEnd::Finished => return Ok(None),
+            }
+        }
+    }
+}
+
+impl Starts {
+    /// Searches for the next one of the shard.
+    fn search(&mut self, py: Python<'_>) -> SearchEnd {
+        py.detach(|| {
+            for _ in 0..PATIENCE {
+                match self.graphs.search(PATIENCE) {
+                    SearchEnd::Found => self.next += 1,
+                    end => return end,
+                }
+                if (self.next - 1) % self.of == self.index {
+                    return SearchEnd::Found;
+                }
+            }
+            SearchEnd::Paused
+        })
+    }
+}
+
+/// The number of starts, or of worlds.
 #[pyfunction]
-pub(crate) fn visit_starts(
+pub(crate) fn count_starts(
+    py: Python<'_>,
+    each: &str,
+    class_: &str,
+    edges: usize,
+) -> PyResult<u64> {
+    let graphs = enumeration(py, each, class_, edges)?;
+    let count = run_watched(py, None, None, |watcher| {
+        let mut graphs = graphs.graphs();
+        let mut count = 0;
+        while !watcher.stop() {
+            match graphs.search(PATIENCE) {
+                SearchEnd::Found => count += 1,
+                SearchEnd::Paused => {}
+                SearchEnd::Finished => return Some(count),
+            }
+        }
+        None
+    })?;
+    count.ok_or_else(interrupted)
+}
+
+/// One of the `count` starts of a class and a size, each equally likely. It is the one that `toposlam play` draws with
+/// this seed.
+#[pyfunction]
+pub(crate) fn random_start(
     py: Python<'_>,
     class_: &str,
     edges: usize,
-    index: u64,
-    of: u64,
-    visit: &Bound<'_, PyAny>,
-) -> PyResult<()> {
-    if index >= of {
-        return Err(error(py, "ShardError", format!("there is no shard {index} of {of}")));
+    count: u64,
+    seed: u64,
+) -> PyResult<Start> {
+    let starts = enumeration(py, "start", class_, edges)?;
+    if count == 0 {
+        return Err(error(py, "SizeError", "there is no start to draw"));
     }
-    let mut number = 0;
-    let mut failed = None;
-    let _ = starts(py, class_, edges)?.for_each(&mut |found| {
-        let mine = number % of == index;
-        let visited = if mine {
-            let start = Start { graph: Arc::new(found.graph.clone()), number };
-            visit.call1((start,)).map(drop)
-        } else if number % 65_536 == 0 {
-            py.check_signals()
-        } else {
-            Ok(())
-        };
-        number += 1;
-        match visited {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(error) => {
-                failed = Some(error);
-                ControlFlow::Break(())
+    let number = Xoshiro256PlusPlus::seed_from_u64(seed).random_range(0..count);
+    let drawn = run_watched(py, None, None, |watcher| {
+        let mut graphs = starts.graphs();
+        let mut left = number;
+        while !watcher.stop() {
+            match graphs.search(PATIENCE) {
+                SearchEnd::Found if left == 0 => return Some(graphs.graph().clone()),
+                SearchEnd::Found => left -= 1,
+                SearchEnd::Paused => {}
+                SearchEnd::Finished => return None,
             }
         }
-    });
-    failed.map_or(Ok(()), Err)
-}
-
-/// The number of starts.
-#[pyfunction]
-pub(crate) fn count_starts(py: Python<'_>, class_: &str, edges: usize) -> PyResult<u64> {
-    let starts = starts(py, class_, edges)?;
-    let count = run_watched(py, None, None, |watcher| {
-        let mut count = 0;
-        let end = starts.for_each(&mut |_| {
-            count += 1;
-            if watcher.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
-        end.is_continue().then_some(count)
+        None
     })?;
-    count.ok_or_else(interrupted)
+    let graph = drawn.ok_or_else(interrupted)?;
+    Ok(Start { graph: Arc::new(graph), number })
 }

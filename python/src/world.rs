@@ -12,7 +12,7 @@ use toposlam_model::{
         plantri,
         world_file::{self, WorldFileErrorKind},
     },
-    isomorphism::{canonical, code},
+    isomorphism::{Bijection, canonical, code, discovery_order},
     marker::{self, Marker},
 };
 
@@ -176,6 +176,36 @@ impl CoreWorld {
             None => canonical(graph).code,
         };
         code.words().to_vec()
+    }
+
+    /// The least start of the graph, equal exactly for isomorphic graphs.
+    fn canonical(&self) -> Self {
+        let order = canonical(&self.0.graph).order;
+        let least = order.first().copied().unwrap_or(Dart(0));
+        Self(NamedWorld::discovered("canonical", "", &self.0.graph, least))
+    }
+
+    /// The darts in the order in which a robot with this start meets them: their numbers in a `Start`.
+    fn discovery_order(&self, py: Python<'_>, facing: u32) -> PyResult<Vec<u32>> {
+        let order = discovery_order(&self.0.graph, self.dart(py, facing)?);
+        Ok(order.into_iter().map(|dart| dart.0).collect())
+    }
+
+    /// The least dart of each orbit under automorphisms: each start once.
+    fn start_darts(&self) -> Vec<u32> {
+        let orbit = canonical(&self.0.graph).orbit;
+        (0..).zip(orbit).filter(|(dart, least)| *dart == least.0).map(|(dart, _)| dart).collect()
+    }
+
+    /// Each automorphism, as the image of each dart; the identity first.
+    fn automorphisms(&self) -> Vec<Vec<u32>> {
+        let graph = &self.0.graph;
+        let orbit = canonical(graph).orbit;
+        let images = graph.darts().filter(|image| orbit[image.at()] == orbit[0]).map(|image| {
+            let images = Bijection::of_starts((graph, Dart(0)), (graph, image));
+            images.images().iter().map(|dart| dart.0).collect()
+        });
+        images.collect()
     }
 
     fn mirror_image(&self) -> Self {

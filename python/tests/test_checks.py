@@ -463,10 +463,8 @@ def test_ctrl_c_in_an_explorer_ends_the_check():
         ({"edges": "5"}, errors.SizeError),
         ({"edges": 2.0}, errors.SizeError),
         ({"edges": []}, errors.SizeError),
-        ({"edges": None}, errors.SizeError),
         ({"edges": True}, errors.SizeError),
         ({"cls": "tree"}, errors.UnknownClassError),
-        ({"cls": None}, errors.UnknownClassError),
         ({"marker": "chalk"}, errors.UnknownMarkerError),
         ({"max_moves": 0}, errors.SizeError),
         ({"max_failures": -1}, errors.SizeError),
@@ -555,7 +553,113 @@ def test_the_moves_of_algorithm_1_are_those_of_the_robot():
             robot.go(door)
         return run.map, run.pose
 
-    assert ts.explore(world, algorithm=replay).moves == run.moves
+    mine = ts.explore(world, algorithm=replay)
+    assert mine.moves == run.moves
+    # The map and the pose are those that were returned.
+    assert (mine.map, mine.pose) == (run.map, run.pose)
+
+
+def test_the_run_of_an_explorer_has_its_map_pose_and_story():
+    world = ts.World.load("worlds/shape-6.toml")
+    run = ts.explore(world, algorithm=depth_first)
+    assert run.map.is_isomorphic(world)
+    # The robot is where its actions lead.
+    end = world.walk(world.start, run.actions)
+    assert run.map.with_start(run.pose).is_isomorphic(world.with_start(end))
+    rows = [line.split(maxsplit=3) for line in run.story.splitlines()[1:]]
+    assert rows[0] == ["0", "corner:1", "2", "doors, marker along door 0"]
+    pose = world.start
+    for number, (door, row) in enumerate(zip(run.actions, rows[1:]), start=1):
+        pose = world.after(pose, door)
+        assert row[:3] == [str(number), str(door), f"{pose.vertex}:{pose.index}"]
+        assert row[3].startswith(f"{world.degree(pose.vertex)} door")
+    assert rows[run.moves + 1] == []
+    assert "<svg" in run._repr_svg_()
+
+    # Vertices whose texts are no names, or are the same, get numbers.
+    def odd(robot):
+        robot.go(0)
+        return {"1": [1], 1: ["1"]}, (1, 0)
+
+    assert ts.explore(ts.World({0: [1], 1: [0]}), algorithm=odd).pose == ("v1", 0)
+
+    def carries(robot):
+        robot.pick_up()
+        robot.drop()
+        robot.go(0)
+        return {0: [1], 1: [0]}, (1, 0)
+
+    carried = ts.explore(ts.World({"a": ["b"], "b": ["a"]}), algorithm=carries, marker="movable")
+    actions = [line.split()[1] for line in carried.story.splitlines()[2:5]]
+    assert actions == ["pick-up", "drop", "0"]
+
+
+def compass(pose, world):
+    """A directional marker as a function."""
+    if pose.vertex != world.start.vertex:
+        return None
+    return (world.start.index - pose.index) % world.degree(pose.vertex)
+
+
+def test_a_marker_of_your_own_that_is_the_directional_one():
+    """The explorer makes the same moves; guesses are not detected, and there are no certificates."""
+    whole = ts.check(depth_first, edges=[3, 4])
+    mine = ts.check(depth_first, edges=[3, 4], marker=compass)
+    assert mine.verdict == "holds" and mine.marker is compass
+    counts = [dataclasses.replace(size, certificate=0) for size in whole.sizes]
+    assert list(mine.sizes) == counts and mine.vs_certificate is None
+    together = ts.check(depth_first, edges=[3, 4], marker=compass, processes=2)
+    assert repr(together) == repr(mine)
+    world = ts.World.load("worlds/figure-1b.toml")
+    run, known = (ts.explore(world, depth_first, marker=m) for m in (compass, "directional"))
+    assert (run.actions, run.map, run.pose) == (known.actions, known.map, known.pose)
+    assert run.certificate is None and "4 doors, marker 0\n" in run.story
+    assert ts.check(depth_first, worlds=[world], marker=compass).mapped == 1
+
+
+def test_a_robot_senses_the_values_of_a_marker_function():
+    world = ts.World.load("worlds/figure-1a.toml")
+
+    def names(pose, at):
+        return ("loud", pose.index == at.start.index) if pose.vertex == at.start.vertex else None
+
+    robot = world.robot(names)
+    assert robot.percept == ts.OwnPercept(4, ("loud", True))
+    assert robot.go(1) == ts.OwnPercept(3, None)
+    assert robot.go(0) == ts.OwnPercept(4, ("loud", False))
+    assert "marker ('loud', False)" in repr(robot)
+    with pytest.raises(errors.NoMarkerError):
+        robot.pick_up()
+    for wrong, text in [
+        (lambda pose, at: pose.vertex, "in a copy"),
+        (lambda pose, at: 1 / 0, "ZeroDivisionError"),
+        (lambda pose, at: [], "unhashable"),
+    ]:
+        for call in [
+            lambda marker=wrong: world.robot(marker),
+            lambda marker=wrong: ts.explore(world, depth_first, marker=marker),
+            lambda marker=wrong: ts.check(depth_first, edges=2, marker=marker),
+            lambda marker=wrong: ts.check(depth_first, worlds=[world], marker=marker),
+        ]:
+            with pytest.raises(errors.MarkerFunctionError, match=text):
+                call()
+    with pytest.raises(errors.UnusedOptionError, match="marker has no effect with an algorithm"):
+        ts.explore(world, "folding", marker=names)
+    with pytest.raises(errors.NotPicklableError, match="names cannot be sent"):
+        ts.check(depth_first, edges=1, marker=names, processes=2)
+    failure = ts.check(lambda robot: None, edges=1, marker=names).failures[0]
+    assert failure.draw().svg == dataclasses.replace(failure, marker="none").draw().svg
+
+
+def test_reports_are_frames():
+    pytest.importorskip("pandas")
+    report = ts.check(wrong_sometimes, edges=[3, 4], keep_going=True)
+    frame = report.pandas()
+    assert frame["starts"].tolist() == [74, 706]
+    assert frame["failed"].sum() == report.failed and frame["mapped"].sum() == report.mapped
+    assert (frame["mean_moves"] * frame["mapped"]).sum() == pytest.approx(report.moves)
+    found = ts.counterexample("undirected", "simple", 6)
+    assert found.pandas().iloc[-1].tolist() == [6, 306, 6]
 
 
 def test_a_map_that_is_a_world_has_its_own_start():
@@ -601,16 +705,8 @@ def test_a_map_may_have_vertices_of_any_kind():
 @pytest.mark.parametrize("algorithm, mean", [("algorithm1", 7.296), ("folding", 7.093)])
 def test_the_mean_moves_of_the_algorithms_on_all_starts(algorithm, mean):
     """Simple worlds with 5 edges; the means are those that a prototype of both had."""
-    moves = []
-
-    def visit(start):
-        world = ts.World._of(start.world("start"))
-        moves.append(ts.explore(world, algorithm=algorithm).moves)
-
-    from toposlam import _core
-
-    _core.visit_starts("simple", 5, 0, 1, visit)
-    assert len(moves) == _core.count_starts("simple", 5) == 108
+    moves = [ts.explore(world, algorithm=algorithm).moves for world in ts.starts(5, "simple")]
+    assert len(moves) == 108
     assert round(sum(moves) / len(moves), 3) == mean
 
 

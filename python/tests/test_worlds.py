@@ -97,8 +97,113 @@ def test_a_planar_embedding_there_and_back():
         plain
     )
     assert ts.World(wheel.to_networkx(), start="x:a").is_isomorphic(wheel)
-    with pytest.raises(errors.NoEmbeddingError, match="genus is 1"):
-        ts.World.load("worlds/figure-1b.toml").to_networkx()
+
+
+def test_a_multigraph_of_networkx_there_and_back():
+    networkx = pytest.importorskip("networkx")
+    theta = ts.World.load("worlds/theta-torus.toml").to_networkx()
+    assert type(theta) is networkx.MultiGraph
+    assert theta.nodes["u"]["rotation"] == [("v", 0), ("v", 1), ("v", 2)]
+    assert theta.nodes["v"]["rotation"] == [("u", 0), ("u", 1), ("u", 2)]
+    kinds = set()
+    for world in ts.starts(4):
+        graph = world.to_networkx()
+        kinds.add(type(graph))
+        assert (graph.number_of_nodes(), world.edge_count) == (world.vertex_count, 4)
+        again = ts.World(graph, start=world.start)
+        assert again.neighbours == world.neighbours and again.far_ends == world.far_ends
+    assert kinds == {networkx.MultiGraph, networkx.PlanarEmbedding}
+
+
+@pytest.mark.parametrize(
+    "rotations, kind, text",
+    [
+        ({"u": [("v", 0), ("v", 1)], "v": [("u", 0)]}, errors.MissingEdgeError, "is not once"),
+        ({"u": [("v", 0), ("v", 0)], "v": [("u", 1), ("u", 1)]}, errors.MissingEdgeError, "is not once"),
+        ({"u": [("v", 0), ("v", 2)], "v": [("u", 0), ("u", 1)]}, errors.MissingEdgeError, r"\('v', 2\)"),
+        ({"u": ["v", "v"], "v": ["u", "u"]}, errors.MissingEdgeError, "not .neighbour, key. of an edge"),
+        ({"u": [("v", []), 7], "v": []}, errors.MissingEdgeError, "rotation of node 'u'"),
+        ({"u": {("v", 0), ("v", 1)}, "v": []}, errors.WorldTypeError, "rotation of node 'u' is a list"),
+        ({"u": None, "v": []}, errors.WorldTypeError, "rotation of node 'u' is a list"),
+    ],
+)
+def test_rotations_that_are_wrong(rotations, kind, text):
+    networkx = pytest.importorskip("networkx")
+    graph = networkx.MultiGraph([("u", "v"), ("u", "v")])
+    networkx.set_node_attributes(graph, rotations, "rotation")
+    with pytest.raises(kind, match=text):
+        ts.World(graph)
+
+
+def test_multigraphs_that_are_no_worlds():
+    networkx = pytest.importorskip("networkx")
+    two = networkx.MultiGraph([("a", "b"), ("c", "d")])
+    networkx.set_node_attributes(two, {v: [(w, 0)] for v, w in ["ab", "ba", "cd", "dc"]}, "rotation")
+    with pytest.raises(errors.NotConnectedError):
+        ts.World(two)
+    alone = networkx.MultiGraph()
+    alone.add_node("a", rotation=[])
+    with pytest.raises(errors.NoEdgeError):
+        ts.World(alone)
+    for graph in [networkx.MultiGraph(), networkx.MultiGraph([(0, 1)]), networkx.MultiDiGraph([(0, 1)])]:
+        with pytest.raises(errors.NoEmbeddingError, match="rotation"):
+            ts.World(graph)
+
+
+def test_permutations_there_and_back():
+    for world in ts.starts(4):
+        opposite, clockwise = world.to_permutations()
+        again = ts.World.from_permutations(opposite, clockwise, start=world.number(world.start))
+        assert again.is_isomorphic(world)
+        # The commutator of the two has the faces as its cycles: another way to the genus.
+        assert sorted(opposite) == sorted(clockwise) == list(range(8))
+
+
+def test_euler_counts_faces():
+    for cls, edges in [("multigraph", 4), ("simple", 5)]:
+        for world in ts.worlds(edges, cls):
+            faces = world.faces()
+            assert world.vertex_count - edges + len(faces) == 2 - 2 * world.genus
+            assert sorted(dart for face in faces for dart in face) == sorted(world.darts())
+            for face in faces:
+                assert world.walk(world.opposite(face[-1]), []) == world.opposite(face[-1])
+                for dart, following in zip(face, face[1:] + face[:1]):
+                    assert world.clockwise(world.opposite(dart)) == following
+    # The faces of the tetrahedron and of the planar wheel.
+    assert [len(face) for face in ts.World.load("worlds/k4-plane.toml").faces()] == [3] * 4
+    wheel = ts.World.load("worlds/figure-1a.toml").faces()
+    assert sorted(map(len, wheel)) == [3, 3, 3, 3, 4]
+
+
+def test_automorphisms_are_symmetries_and_form_a_group():
+    # Rotations of the tetrahedron; turns of a cycle with 4 edges, and of the wheel.
+    for name, count in [("k4-plane", 12), ("cycle-4", 8), ("figure-1a", 4), ("chain-5", 2), ("shape-6", 1)]:
+        world = ts.World.load(f"worlds/{name}.toml")
+        maps = world.automorphisms()
+        assert len(maps) == count, name
+        assert maps[0] == {dart: dart for dart in world.darts()}
+        for one in maps:
+            assert set(one.values()) == set(world.darts())
+            for dart, image in one.items():
+                assert one[world.opposite(dart)] == world.opposite(image)
+                assert one[world.clockwise(dart)] == world.clockwise(image)
+            assert all({dart: one[other[dart]] for dart in one} in maps for other in maps)
+        assert len(world.starts()) == 2 * world.edge_count // count
+    sizes = [len(world.automorphisms()) for world in ts.worlds(4)]
+    assert sum(8 // size for size in sizes) == 706
+
+
+def test_canonical_forms_are_equal_exactly_for_isomorphic_graphs():
+    worlds = [*ts.worlds(3), *(world.mirror_image() for world in ts.worlds(3))]
+    for one in worlds:
+        for other in worlds:
+            same = one.is_isomorphic(other)
+            assert (one.canonical() == other.canonical()) == same
+            assert not same or hash(one.canonical()) == hash(other.canonical())
+    starts = list(ts.starts(4))
+    assert len({start.canonical() for start in starts}) == 107
+    wheel = ts.World.load("worlds/figure-1a.toml")
+    assert wheel.canonical().is_isomorphic(wheel.with_start(None)) and wheel.canonical().start is None
 
 
 def test_a_world_is_saved_pickled_and_drawn(tmp_path):

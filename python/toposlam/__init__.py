@@ -10,7 +10,6 @@
 from . import errors
 from ._core import Percept, Robot
 from .checks import (
-    CLASSES,
     CheckReport,
     Failure,
     SizeReport,
@@ -28,11 +27,13 @@ from .comparisons import (
     compare,
     counterexample,
 )
+from .enumeration import CLASSES, count_starts, count_worlds, random_world, starts, worlds
 from .errors import ExplorerError, ToposlamError, WorldError
 from .logs import ConformReport, Divergence, Log, LogEvent, Table, conform, read_log
 from .markers import MARKERS, OwnPercept
 from .plots import plot_costs, plot_visits, plot_way
 from .runs import Run, explore
+from .trails import Trail
 from .worlds import Dart, Picture, World
 
 __all__ = [
@@ -57,6 +58,7 @@ __all__ = [
     "SizeReport",
     "Table",
     "ToposlamError",
+    "Trail",
     "Walk",
     "World",
     "WorldError",
@@ -65,6 +67,8 @@ __all__ = [
     "check_shard",
     "compare",
     "conform",
+    "count_starts",
+    "count_worlds",
     "counterexample",
     "errors",
     "explore",
@@ -72,6 +76,9 @@ __all__ = [
     "plot_costs",
     "plot_visits",
     "plot_way",
+    "random_world",
     "read_log",
     "shards",
+    "starts",
+    "worlds",
 ]

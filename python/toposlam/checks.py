@@ -6,37 +6,32 @@ import multiprocessing
 import pickle
 import re
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
-from typing import Union
+from typing import Any
 
 from . import _core
+from .enumeration import Edges, check_class, count_starts, sizes_of, start_name
 from .errors import (
     ExplorerError,
     LimitError,
     NotPicklableError,
+    OtherCheckError,
     OutOfTimeError,
     ShardError,
-    SizeError,
-    UnknownClassError,
-    UnknownMarkerError,
     WorkerLostError,
+    WorldTypeError,
 )
-from .explorers import Clock, Explorer, check_explorer, judged
-from .failures import Failure, failure_of
+from .explorers import Answer, Clock, Explorer, check_explorer, judged
+from .failures import Failure, failure_of, place
 from .limits import MAX_MOVES, SECONDS, check_limit, check_run_limits, check_unused
-from .markers import MARKERS
+from .logs import Table
+from .markers import Marker, check_marker, drawn, marker_name, sensed
 from .progress import Advance, bar
-from .worlds import World
-
-CLASSES = ("multigraph", "simple", "corridor", "planar")
-"""The names of the classes of worlds."""
-
-Edges = Union[int, Iterable[int]]
+from .worlds import World, world_of
 
 
 @dataclass(frozen=True)
@@ -58,6 +53,11 @@ class SizeReport:
     """The lengths of the certificates of the starts that were mapped correctly, in moves, added up; 0 if the
     marker is not directional."""
 
+    @property
+    def failed(self) -> int:
+        """The starts on which the explorer failed."""
+        return self.starts - self.mapped - self.unknown
+
     def __add__(self, other: SizeReport) -> SizeReport:
         return SizeReport(
             self.edges,
@@ -76,9 +76,9 @@ class CheckReport:
 
     explorer: str
     """The explorer's name."""
-    cls: str
-    """The class of the worlds."""
-    marker: str
+    cls: str | None
+    """The class of the worlds; None if the worlds are given."""
+    marker: Marker
     """The kind of marker of the robot."""
     sizes: tuple[SizeReport, ...]
     """The counts for each number of edges."""
@@ -98,6 +98,8 @@ class CheckReport:
     """The shards that were checked, counted from 1."""
     of: int
     """The number of shards."""
+    worlds: tuple[str, ...] | None = field(default=None, repr=False)
+    """The names and the starts that were checked, if the worlds are given."""
 
     @property
     def starts(self) -> int:
@@ -117,7 +119,7 @@ class CheckReport:
     @property
     def failed(self) -> int:
         """The number of starts on which the explorer failed."""
-        return self.starts - self.mapped - self.unknown
+        return sum(size.failed for size in self.sizes)
 
     @property
     def is_complete(self) -> bool:
@@ -155,6 +157,22 @@ class CheckReport:
         certificate = sum(size.certificate for size in self.sizes)
         return self.moves / certificate if certificate else None
 
+    def pandas(self) -> Any:
+        """The counts as a `pandas.DataFrame`, a row for each number of edges.
+
+        >>> import toposlam as ts
+        >>> frame = ts.check(lambda robot: ({0: [1], 1: [0]}, (robot.go(0) and 1, 0)), 1, "simple").pandas()
+        >>> frame.to_dict("records")[0]["mean_moves"]
+        1.0
+        """
+        sizes, columns = self.sizes, ("edges", "starts", "mapped", "failed", "unknown", "most_moves")
+        table = {name: [getattr(size, name) for size in sizes] for name in columns}
+        table["mean_moves"] = [size.moves / size.mapped if size.mapped else None for size in sizes]
+        table["vs_certificate"] = [
+            size.moves / size.certificate if size.certificate else None for size in sizes
+        ]
+        return Table(table).pandas()
+
     def merge(self, *others: CheckReport) -> CheckReport:
         """The report of several shards together. The order does not matter. Raises `ShardError` if a shard
         occurs twice, or the reports are not of one check: of one explorer's name, class, marker, limits and
@@ -163,20 +181,33 @@ class CheckReport:
         shards = tuple(sorted(shard for report in reports for shard in report.shards))
         if len(set(shards)) < len(shards):
             raise ShardError(f"a shard occurs twice: {shards}")
-        sizes: dict[int, SizeReport] = {size.edges: SizeReport(size.edges) for size in self.sizes}
+        sizes: dict[int, SizeReport] = {}
+        edges = [size.edges for size in self.sizes]
         for report in reports:
-            if report._head() != self._head() or [size.edges for size in report.sizes] != list(sizes):
+            is_same = self.cls is None or [size.edges for size in report.sizes] == edges
+            if report._head() != self._head() or not is_same:
                 raise ShardError("the reports are not of one check")
             for size in report.sizes:
-                sizes[size.edges] += size
+                sizes[size.edges] = sizes.get(size.edges, SizeReport(size.edges)) + size
 
         def first(failures: Iterable[Failure]) -> tuple[Failure, ...]:
-            order = sorted(failures, key=lambda failure: (failure.world.edge_count, failure.number))
-            return tuple(order[: self.max_failures])
+            # Worlds that are given are checked in their own order.
+            def place(failure: Failure) -> tuple[int, int]:
+                return (0 if self.cls is None else failure.world.edge_count, failure.number)
+
+            return tuple(sorted(failures, key=place)[: self.max_failures])
 
         failures = first(failure for report in reports for failure in report.failures)
         limits = first(limit for report in reports for limit in report.limits)
-        return replace(self, sizes=tuple(sizes.values()), failures=failures, limits=limits, shards=shards)
+        listed = None if self.worlds is None else _dealt([report.worlds or () for report in reports])
+        return replace(
+            self,
+            sizes=tuple(sizes[size] for size in sorted(sizes)),
+            failures=failures,
+            limits=limits,
+            shards=shards,
+            worlds=listed,
+        )
 
     def _with_larger(self, other: CheckReport) -> CheckReport:
         """The report with that of larger worlds."""
@@ -208,161 +239,178 @@ class _Question:
 
     explorer: Explorer
     edges: tuple[int, ...]
-    cls: str
-    marker: str
+    cls: str | None
+    marker: Marker
     max_moves: int
     seconds: float
     max_failures: int
     stop_after: int | None = None
     keep_going: bool = True
+    given: Iterable[tuple[int, World]] | None = None
+    """Starts with their numbers, in place of all starts of the class."""
 
     @property
     def name(self) -> str:
         return getattr(self.explorer, "__name__", type(self.explorer).__name__)
 
-    def total(self) -> int:
-        return sum(_core.count_starts(self.cls, edges) for edges in self.edges)
+    def total(self) -> int | None:
+        if self.cls is None or self.given is not None:
+            return len(self.given) if isinstance(self.given, tuple) else None
+        return count_starts(self.edges, self.cls)
 
-
-def _edges(edges: Edges) -> tuple[int, ...]:
-    try:
-        wanted = [edges] if isinstance(edges, int) else list(edges)
-    except TypeError:
-        wanted = [edges]  # type: ignore[list-item]
-    for number in wanted:
-        if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= 32:
-            raise SizeError(f"a number of edges is from 1 to 32, not {number!r}")
-    if not wanted:
-        raise SizeError("no number of edges is given: an empty check never holds")
-    return tuple(sorted(set(wanted)))
+    def cases(self, index: int, of: int) -> Iterator[tuple[_core.Start, World | None]]:
+        """The starts of a shard, each with its world if that is given."""
+        if self.given is not None:
+            for place, (number, world) in enumerate(self.given):
+                if place % of == index:
+                    yield _core.Start.of(world._core, world.facing(), number), world
+        elif self.cls is not None:
+            for edges in self.edges:
+                for start in _core.Starts("start", self.cls, edges, index, of):
+                    yield start, None
 
 
 def _question(
     explorer: Explorer,
     edges: Edges,
-    cls: str,
-    marker: str,
+    cls: str | None,
+    marker: Marker,
     max_moves: int,
     seconds: float,
     max_failures: int,
 ) -> _Question:
     check_explorer(explorer)
-    if cls not in CLASSES:
-        raise UnknownClassError(f"{cls!r} is not a class of worlds; they are {', '.join(CLASSES)}")
-    if marker not in MARKERS:
-        raise UnknownMarkerError(f"{marker!r} is not a marker; they are {', '.join(MARKERS)}")
+    if cls is not None:
+        check_class(cls)
+    check_marker(marker)
     check_limit("max_failures", max_failures)
     check_run_limits(max_moves, seconds)
-    wanted = _edges(edges)
+    wanted = () if cls is None else sizes_of(edges)
     return _Question(explorer, wanted, cls, marker, max_moves, seconds, max_failures)
+
+
+def _given(worlds: Iterable[World]) -> Iterator[tuple[int, World]]:
+    """Each start of the worlds, with its number; of a world without a start, all of them."""
+    try:
+        listed = iter(worlds)
+    except TypeError:
+        raise WorldTypeError(f"worlds are a list or an iterator of worlds, not {worlds!r}") from None
+    number = 0
+    for world in listed:
+        for start in [world] if world_of(world).start is not None else world.starts():
+            yield number, start
+            number += 1
 
 
 def _checked(question: _Question, index: int, of: int, advance: Advance | None) -> CheckReport:
     """The report of one shard, counted from 0."""
-    sizes = []
+    # The fields of `SizeReport` in their order.
+    counts = {edges: [0] * 6 for edges in question.edges}
     failures: list[Failure] = []
     limits: list[Failure] = []
+    names: list[str] = []
+    explorer, marker, bound = question.explorer, question.marker, question.max_moves
+    with_certificates = marker == "directional"
+    checked = shown = wrong = 0
     with Clock(question.seconds) as clock:
-        for edges in question.edges:
-            found = (failures, limits)
-            sizes.append(_size(question, edges, (index, of), found, (clock, advance)))
+        for start, world in question.cases(index, of):
+            robot = start.robot(sensed(marker, start, world), bound)
+            error, answer = judged(explorer, start, robot, clock)
+            checked += 1
+            if world is not None:
+                names.append(place(world))
+            count = counts.setdefault(start.edges, [0] * 6)
+            count[0] += 1
+            if error is None:
+                moves = robot.moves
+                count[1] += 1
+                count[3] += moves
+                count[4] = max(count[4], moves)
+                if with_certificates:
+                    count[5] += start.certificate
+            else:
+                is_limit = isinstance(error, LimitError)
+                count[2] += is_limit
+                wrong += 1
+                kept = limits if is_limit else failures
+                if len(kept) < question.max_failures:
+                    kept.append(_failure(question, (start, world), robot, (error, answer)))
+            if advance is not None and checked - shown == 256:
+                advance(checked - shown)
+                shown = checked
+            is_stuck = isinstance(error, OutOfTimeError) and not question.keep_going
+            if is_stuck or (question.stop_after is not None and wrong >= question.stop_after):
+                break
+    if advance is not None:
+        advance(checked - shown)
     return CheckReport(
         explorer=question.name,
         cls=question.cls,
-        marker=question.marker,
-        sizes=tuple(sizes),
+        marker=marker,
+        sizes=tuple(SizeReport(edges, *counts[edges]) for edges in sorted(counts)),
         failures=tuple(failures),
         limits=tuple(limits),
         max_failures=question.max_failures,
-        max_moves=question.max_moves,
+        max_moves=bound,
         seconds=question.seconds,
         version=version("toposlam"),
         shards=(index + 1,),
         of=of,
+        worlds=None if question.given is None else tuple(names),
     )
 
 
-class _EnoughError(Exception):
-    """As many starts as are wanted failed, or reached a limit."""
-
-
-def _size(
+def _failure(
     question: _Question,
-    edges: int,
-    shard: tuple[int, int],
-    found: tuple[list[Failure], list[Failure]],
-    tools: tuple[Clock, Advance | None],
-) -> SizeReport:
-    clock, advance = tools
-    explorer, marker, bound = question.explorer, question.marker, question.max_moves
-    with_certificates = marker == "directional"
-    failures, limits = found
-    starts = mapped = unknown = total = most = certificates = shown = 0
-
-    def visit(start: _core.Start) -> None:
-        nonlocal starts, mapped, unknown, total, most, certificates, shown
-        robot = start.robot(marker, bound)
-        error = judged(explorer, start, robot, clock)
-        starts += 1
-        if error is None:
-            moves = robot.moves
-            mapped += 1
-            total += moves
-            most = max(most, moves)
-            if with_certificates:
-                certificates += start.certificate
-        else:
-            is_limit = isinstance(error, LimitError)
-            unknown += is_limit
-            kept = limits if is_limit else failures
-            if len(kept) < question.max_failures:
-                kept.append(_failure(question, start, robot, error))
-        if advance is not None and starts - shown == 256:
-            advance(starts - shown)
-            shown = starts
-        is_stuck = isinstance(error, OutOfTimeError) and not question.keep_going
-        if is_stuck or (question.stop_after is not None and starts - mapped >= question.stop_after):
-            raise _EnoughError
-
-    with suppress(_EnoughError):
-        _core.visit_starts(question.cls, edges, *shard, visit)
-    if advance is not None:
-        advance(starts - shown)
-    return SizeReport(edges, starts, mapped, unknown, total, most, certificates)
+    case: tuple[_core.Start, World | None],
+    robot: _core.Robot,
+    ended: tuple[ExplorerError, Answer],
+) -> Failure:
+    start, world = case
+    if world is None:
+        world = World._of(start.world(start_name(question.cls or "", start)))
+    return failure_of(world, ended, robot, question.marker, start.number)
 
 
-def _failure(question: _Question, start: _core.Start, robot: _core.Robot, error: ExplorerError) -> Failure:
-    name = f"{question.cls}-{start.edges}-{start.number}"
-    core = start.world(name)
-    text = f"{name} v0:{core.start_text(0).split(':', 1)[1]}"
-    return failure_of(World._of(core), text, error, robot, question.marker, start.number)
+def _dealt(hands: Sequence[Sequence[str]]) -> tuple[str, ...]:
+    """What was dealt to several hands, in the order of before."""
+    most = max(map(len, hands), default=0)
+    return tuple(hand[place] for place in range(most) for hand in hands if place < len(hand))
 
 
 def check(
     explorer: Explorer,
-    edges: Edges = range(1, 6),
-    cls: str = "multigraph",
+    edges: Edges | None = None,
+    cls: str | None = None,
     *,
-    marker: str = "directional",
+    worlds: Iterable[World] | None = None,
+    marker: Marker = "directional",
     max_moves: int = MAX_MOVES,
     seconds: float = SECONDS,
     max_failures: int = 100,
     stop_after: int | None = None,
     keep_going: bool = False,
+    failures_first: CheckReport | None = None,
     processes: int = 1,
     progress: bool | None = None,
 ) -> CheckReport:
-    """Checks an explorer on every start of every world with `edges` edges: a number, or several.
+    """Checks an explorer on every start of every world with `edges` edges: a number, or several; 1 to 5
+    unless they are given. Or, with `worlds`, on these: on the start of each, or on all starts of a world
+    without one.
 
     After a number of edges with a start that failed or reached a limit, worlds with more edges are not
     checked, and after a start that took too long nothing more, unless `keep_going`. With `stop_after`, the
-    check ends after so many starts that failed or reached a limit.
+    check ends after so many starts that failed or reached a limit. All `worlds` that are given are checked,
+    whatever their sizes. With `failures_first`, an earlier report, the starts in its `failures` and `limits`
+    are checked first. If the explorer still fails there, the result is the report on these starts, which its
+    `worlds` name; otherwise all starts are checked.
 
     `cls` is the class of the worlds, one of `CLASSES`, and `marker` the kind of the robot's marker, one of
-    `MARKERS`. A map is right if it is isomorphic to the world, start to start, and the robot is where the
-    explorer says. A right map after a walk that does not determine the world is a guess, which fails: there
-    is another world in which the explorer makes the same walk, and returns the same map. With another
-    marker than `"directional"` and `"none"` that is not known, and no map is called a guess.
+    `MARKERS` or a function of your own: see `MarkerFunction`. A map is right if it is isomorphic to the
+    world, start to start, and the robot is where the explorer says. A right map after a walk that does not
+    determine the world is a guess, which fails: there is another world in which the explorer makes the same
+    walk, and returns the same map. With another marker than `"directional"` and `"none"` that is not known,
+    and no map is called a guess.
 
     After `max_moves` moves, pick-ups and drops, or `seconds` seconds for a start (`math.inf` is no limit),
     its result is not known. The report keeps the first `max_failures` failures, and as many starts that
@@ -371,8 +419,10 @@ def check(
     it, on a terminal and in a notebook.
 
     Raises `NotAnExplorerError`, `SizeError`, `UnknownClassError` or `UnknownMarkerError` for arguments that
-    cannot be; with several processes also `NotPicklableError`, `WorkerLostError` if one of them ends, and
-    `UnusedOptionError` for `stop_after`.
+    cannot be, `MarkerFunctionError` for a marker's function, `WorldTypeError` for what is not a world,
+    `OtherCheckError` if the earlier report is not of such a check, and `UnusedOptionError` for an option
+    without effect beside the others; with several processes also `NotPicklableError`, and `WorkerLostError`
+    if one of them ends.
 
     >>> import toposlam as ts
     >>> def there(robot):
@@ -384,18 +434,37 @@ def check(
     >>> print(report.failures[0])
     start simple-2-0 v0:v1, after 1 move: the map is not the world: 1 edge against 2
     """
+    if worlds is not None:
+        check_unused("with worlds", edges=edges, cls=cls)
+    else:
+        cls = "multigraph" if cls is None else cls
+    edges = range(1, 6) if edges is None else edges
     question = _question(explorer, edges, cls, marker, max_moves, seconds, max_failures)
+    if worlds is not None:
+        question = replace(question, given=_given(worlds))
     check_limit("processes", processes)
     if stop_after is not None:
         check_limit("stop_after", stop_after)
     if processes > 1:
         check_unused("with several processes", stop_after=stop_after)
         _check_picklable(question)
+    if failures_first is not None:
+        check_unused("with keep_going: all starts are checked", failures_first=keep_going or None)
+        again = replace(
+            question, given=_failed(failures_first, question), stop_after=stop_after, keep_going=False
+        )
+        with bar("checking again", "starts", progress, again.total) as advance:
+            first = _checked(again, 0, 1, advance)
+        if first.mapped < first.starts:
+            return first
+    if question.given is not None and (processes > 1 or not isinstance(worlds, Iterator)):
+        question = replace(question, given=tuple(question.given))
     report, failed = None, 0
     with bar("checking", "starts", progress, question.total) as advance:
-        for size in question.edges:
+        sizes: list[tuple[int, ...]] = [(size,) for size in question.edges]
+        for some in sizes or [()]:
             left = None if stop_after is None else stop_after - failed
-            one = replace(question, edges=(size,), stop_after=left, keep_going=keep_going)
+            one = replace(question, edges=some, stop_after=left, keep_going=keep_going)
             found = _checked(one, 0, 1, advance) if processes == 1 else _in_processes(one, processes, advance)
             report = found if report is None else report._with_larger(found)
             failed = report.starts - report.mapped
@@ -405,12 +474,32 @@ def check(
     return report
 
 
+def _failed(report: CheckReport, question: _Question) -> tuple[tuple[int, World], ...]:
+    """The starts of an earlier report that failed or reached a limit, as far as the check has them."""
+    if not isinstance(report, CheckReport):
+        raise OtherCheckError(f"failures_first is the report of an earlier check, not {report!r}")
+    if (report.cls, report.marker) != (question.cls, question.marker):
+        of = f"class {report.cls}" if report.cls else "given worlds"
+        raise OtherCheckError(
+            f"the earlier report is of another check: of {of} with the marker {marker_name(report.marker)}"
+        )
+    failures = sorted(
+        (*report.failures, *report.limits), key=lambda failure: (failure.world.edge_count, failure.number)
+    )
+    return tuple(
+        (failure.number, failure.world)
+        for failure in failures
+        if question.cls is None or failure.world.edge_count in question.edges
+    )
+
+
 def _check_picklable(question: _Question) -> None:
-    try:
-        pickle.dumps(question.explorer)
-    except Exception as cause:
-        text = f"{question.name} cannot be sent to another process; define it at the top of a module"
-        raise NotPicklableError(f"{text} ({cause})") from cause
+    for value, name in [(question.explorer, question.name), (question.marker, marker_name(question.marker))]:
+        try:
+            pickle.dumps(value)
+        except Exception as cause:
+            text = f"{name} cannot be sent to another process; define it at the top of a module"
+            raise NotPicklableError(f"{text} ({cause})") from cause
 
 
 def _in_processes(question: _Question, processes: int, advance: Advance | None) -> CheckReport:
@@ -457,7 +546,7 @@ def check_shard(
     edges: Edges = range(1, 6),
     cls: str = "multigraph",
     *,
-    marker: str = "directional",
+    marker: Marker = "directional",
     max_moves: int = MAX_MOVES,
     seconds: float = SECONDS,
     max_failures: int = 100,

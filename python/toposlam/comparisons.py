@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Union
+from typing import Any, Union
 
 from . import _core
 from .errors import SizeError
-from .markers import Marker, OwnPercept, Sightings, of_core
+from .logs import Table
+from .markers import Marker, OwnPercept, Sightings, drawn, marker_name, of_core
 from .progress import bar
 from .worlds import Dart, Picture, World, world_of
 
@@ -124,8 +125,7 @@ class WorldPair:
 
     def draw(self) -> Picture:
         """Both worlds, side by side."""
-        # What a function of a pose adds to percepts lies nowhere.
-        kind = self.marker if isinstance(self.marker, str) else "none"
+        kind = drawn(self.marker)
         return side_by_side([world.draw(marker=kind).svg for world in (self.one, self.other)])
 
     def _repr_svg_(self) -> str:
@@ -166,8 +166,18 @@ class Counterexamples:
             for one, other in combinations(group, 2)
         ]
 
+    def pandas(self) -> Any:
+        """What was found, as a `pandas.DataFrame`: a row for each number of edges.
+
+        >>> import toposlam as ts
+        >>> ts.counterexample("none", "simple", 4).pandas()["ambiguous"].tolist()
+        [0, 0, 1, 1]
+        """
+        columns = ("edges", "placed_worlds", "ambiguous")
+        return Table({name: [getattr(size, name) for size in self.sizes] for name in columns}).pandas()
+
     def __repr__(self) -> str:
-        marker = self.marker if isinstance(self.marker, str) else getattr(self.marker, "__name__", "own")
+        marker = marker_name(self.marker)
         edges = self.sizes[-1].edges if self.sizes else 0
         found = f"{sum(map(len, self.groups))} worlds in {len(self.groups)} groups"
         return f"<Counterexamples: {marker}, {self.cls}, up to {edges} edges: {found}>"

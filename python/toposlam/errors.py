@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .failures import Failure
+    from .markers import Marker
     from .worlds import World
 
 
@@ -61,6 +62,14 @@ class UnusedOptionError(ToposlamError, TypeError):
 
 class ShardError(ToposlamError, ValueError):
     """A text is not a shard `i/n`, or reports are not of disjoint shards of one check."""
+
+
+class OtherCheckError(ToposlamError, ValueError):
+    """A report is not one of an earlier check of the same class and marker."""
+
+
+class ContradictionError(ToposlamError, ValueError):
+    """No world, of any size, explains a walk; or its vertices have too many doors."""
 
 
 class MapTooLargeError(ToposlamError):
@@ -153,7 +162,6 @@ class ExplorerError(ToposlamError):
         self.start = start
         self.moves = moves
         self.failure: Failure | None = None
-        self.answer: object = None
 
     def __str__(self) -> str:
         place = [] if self.start is None else [f"start {self.start}"]
@@ -222,7 +230,7 @@ class GuessedError(ExplorerError):
     """An explorer's map is right, and its walk does not determine the world: it makes the same walk in
     another world, and returns the same map. `other` is that world."""
 
-    _walk: tuple[World, str, tuple[int | str, ...]] | None = None
+    _walk: tuple[World, Marker, tuple[int | str, ...]] | None = None
     _found: tuple[World | None, bool] | None = None
 
     def _search(self) -> tuple[World | None, bool]:

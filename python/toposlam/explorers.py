@@ -32,12 +32,12 @@ from .errors import (
 )
 from .maps import Doors, doors_of, shown
 from .threads import raise_in
-from .worlds import World
+from .worlds import Dart, World
 
 Answer = Any
 """A map and the robot's pose in it."""
 
-Explorer = Callable[[_core.Robot], Union[Answer, "Generator[int, _core.Percept, Answer]"]]
+Explorer = Callable[[_core.Robot], Union[Answer, "Generator[int, Any, Answer]"]]
 """An explorer: a function of a robot, or a generator."""
 
 
@@ -117,12 +117,14 @@ def check_explorer(explorer: object) -> None:
         raise NotAnExplorerError("an explorer is not `async`: nothing awaits it; begin it with `def`")
 
 
-def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Clock) -> ExplorerError | None:
-    """Runs an explorer, and returns what is wrong, or None.
+def judged(
+    explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Clock
+) -> tuple[ExplorerError | None, Answer]:
+    """Runs an explorer, and returns what is wrong, or None, and its answer.
 
     The run ends with the first action that is not possible, even if the explorer catches the exception.
     """
-    answer = None
+    answer: Answer = None
     try:
         answer = clock.run(explorer, robot)
         wrong = None if robot.refusal is not None else judge(answer, start, robot)
@@ -136,10 +138,7 @@ def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Cl
         wrong = _raised(cause)
     finally:
         robot.end_run()
-    wrong = wrong if robot.refusal is None else robot.refusal
-    if wrong is not None:
-        wrong.answer = answer
-    return wrong
+    return (wrong if robot.refusal is None else robot.refusal), answer
 
 
 def _raised(cause: BaseException) -> RaisedError:
@@ -188,6 +187,20 @@ def judge(answer: Answer, start: _core.Start, robot: _core.Robot) -> ExplorerErr
     return WrongPoseError(
         f"the map is right, but the robot came in by {truly!r} of the map, and not by {believed!r}"
     )
+
+
+def mapped(answer: Answer, name: str) -> tuple[World, Dart]:
+    """The map of an answer that was judged, as a world, and the robot's pose in it."""
+    map_, pose = answer
+    doors, facing, place = _numbers(map_, pose)
+    if isinstance(map_, World):
+        world = map_.with_start(map_.darts()[facing])
+    else:
+        texts = [str(vertex) for vertex in doors.vertices]
+        if len(set(texts)) < len(texts) or not all(map(_core.is_name, texts)):
+            texts = [f"v{number}" for number in range(len(texts))]
+        world = World._of(_core.World.from_doors(doors.degrees, doors.opposite, texts, name, "", facing))
+    return world, world.darts()[place]
 
 
 def _numbers(map_: object, pose: object) -> tuple[Doors, int, int]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -11,7 +11,11 @@ from typing import Union
 
 from . import _core
 from .errors import ExplorerError, GuessedError, LimitError, PictureError, ToposlamError
+from .explorers import Answer, mapped
+from .markers import Marker, OwnPercept, drawn
 from .worlds import Dart, Picture, World
+
+AnyPercept = Union[_core.Percept, OwnPercept]
 
 
 @dataclass(frozen=True)
@@ -26,7 +30,7 @@ class Failure:
     """What the robot did."""
     number: int
     """The number of the start among those with as many edges."""
-    marker: str
+    marker: Marker
     """The kind of marker of the robot."""
     map: World | None = None
     """The map that the explorer returned, if it is one."""
@@ -39,19 +43,9 @@ class Failure:
         return sum(isinstance(action, int) for action in self.actions)
 
     @cached_property
-    def percepts(self) -> tuple[_core.Percept, ...]:
+    def percepts(self) -> tuple[AnyPercept, ...]:
         """What the robot sensed, at the start and after each action."""
-        robot = self.world.robot(self.marker, max(1, len(self.actions)))
-        percepts = [robot.percept]
-        for action in self.actions:
-            if isinstance(action, int):
-                robot.go(action)
-            elif action == "pick-up":
-                robot.pick_up()
-            else:
-                robot.drop()
-            percepts.append(robot.percept)
-        return tuple(percepts)
+        return _percepts(self.world, self.marker, self.actions)
 
     @property
     def other(self) -> World | None:
@@ -72,7 +66,8 @@ class Failure:
         moves = f"after {self.moves} move{'' if self.moves == 1 else 's'}"
         caption = f"{moves}: {text if len(text) <= 90 else text[:87] + '...'}"
         verdict = "not known" if isinstance(self.error, LimitError) else "fails"
-        return self.world.draw(title=f"{verdict} on {self.world.name}", caption=caption, marker=self.marker)
+        title = f"{verdict} on {self.world.name}"
+        return self.world.draw(title=title, caption=caption, marker=drawn(self.marker))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the run: a page on which it can be stepped through (.html), or a picture (.svg, .png)."""
@@ -90,8 +85,7 @@ class Failure:
         return None if self.map is None else (self.map._core, "map")
 
     def _shown(self) -> _core._ExplorerRun:
-        actions = [str(action) for action in self.actions]
-        return _core.explorer_run(self.world._core, self.marker, actions, self._beside(), str(self))
+        return run_shown(self.world, self.marker, self.actions, self._beside(), str(self))
 
     def _repr_svg_(self) -> str:
         return self.draw().svg
@@ -100,27 +94,50 @@ class Failure:
         return str(self.error)
 
 
+def place(world: World) -> str:
+    """The name of a start in messages."""
+    return f"{world.name} {world._core.start_text(world.facing())}"
+
+
 def failure_of(
-    world: World, start: str, error: ExplorerError, robot: _core.Robot, marker: str, number: int
+    world: World, ended: tuple[ExplorerError, Answer], robot: _core.Robot, marker: Marker, number: int
 ) -> Failure:
-    """The failure of a run from a start, which is completed in its error."""
-    error.start, error.moves = start, robot.moves
+    """The failure of a run from the start of a world, which is completed in its error."""
+    error, answer = ended
+    error.start, error.moves = place(world), robot.moves
     actions = tuple(robot.actions)
     if isinstance(error, GuessedError):
         error._walk = (world, marker, actions)
-    map_, pose = _returned(error.answer)
-    error.answer = None
+    try:
+        map_, pose = mapped(answer, "map")
+    except (ToposlamError, TypeError, ValueError, OverflowError):
+        return Failure(world, error, actions, number, marker)
     return Failure(world, error, actions, number, marker, map_, pose)
 
 
-def _returned(answer: object) -> tuple[World | None, Dart | None]:
-    """The map of an answer as a world, and the pose in it."""
-    if not (isinstance(answer, (tuple, list)) and len(answer) == 2):
-        return None, None
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            map_ = World(answer[0], name="map")
-        return map_, map_.darts()[map_.number(answer[1])]
-    except ToposlamError:
-        return None, None
+def _percepts(world: World, marker: Marker, actions: Sequence[Union[int, str]]) -> tuple[AnyPercept, ...]:
+    robot = world.robot(marker, max_moves=max(1, len(actions)))
+    percepts = [robot.percept]
+    for action in actions:
+        if isinstance(action, int):
+            robot.go(action)
+        elif action == "pick-up":
+            robot.pick_up()
+        else:
+            robot.drop()
+        percepts.append(robot.percept)
+    return tuple(percepts)
+
+
+def run_shown(
+    world: World,
+    marker: Marker,
+    actions: Sequence[Union[int, str]],
+    beside: tuple[_core.World, str] | None,
+    ending: str,
+) -> _core._ExplorerRun:
+    """A run from the start of a world as a text, a picture and a page."""
+    texts = [str(action) for action in actions]
+    # What a function of a pose adds to percepts, the extension module does not know.
+    own = None if isinstance(marker, str) else [str(percept) for percept in _percepts(world, marker, actions)]
+    return _core.explorer_run(world._core, drawn(marker), texts, own, beside, ending)

@@ -179,6 +179,11 @@ class ConformReport:
     """What a reader should know: the log was recorded in another world, goes on from an earlier run, or has
     lines or messages that were skipped."""
 
+    def pandas(self) -> Any:
+        """The events as a `pandas.DataFrame`, a row for each."""
+        columns = ("number", "time", "kind", "percept", "door", "pose")
+        return Table({name: [getattr(event, name) for event in self.events] for name in columns}).pandas()
+
     def __repr__(self) -> str:
         text = f"{self.path.name}: {self.verdict}, {len(self.events)} events, {self.evidence}"
         if self.divergence is not None:

@@ -218,19 +218,58 @@ def _of_far_ends(lists: Mapping[Hashable, list[Any]]) -> Doors:
 
 
 def of_networkx(graph: Any) -> Doors:
-    """The doors of a `networkx.PlanarEmbedding`."""
+    """The doors of a `networkx.PlanarEmbedding`, or of a `networkx.MultiGraph` with rotations."""
     import networkx
 
-    if not isinstance(graph, networkx.PlanarEmbedding):
-        raise NoEmbeddingError(
-            f"a networkx.{type(graph).__name__} has no clockwise order; "
-            "is_planar, embedding = networkx.check_planarity(graph) makes one of a planar graph"
-        )
-    try:
-        graph.check_structure()
-    except networkx.NetworkXException as cause:
-        raise NoEmbeddingError(f"the PlanarEmbedding is not valid: {cause}") from None
-    return of_dict({vertex: list(graph.neighbors_cw_order(vertex)) for vertex in graph})
+    if isinstance(graph, networkx.PlanarEmbedding):
+        try:
+            graph.check_structure()
+        except networkx.NetworkXException as cause:
+            raise NoEmbeddingError(f"the PlanarEmbedding is not valid: {cause}") from None
+        return of_dict({vertex: list(graph.neighbors_cw_order(vertex)) for vertex in graph})
+    has_rotations = all("rotation" in attributes for _, attributes in graph.nodes(data=True))
+    if graph.is_multigraph() and not graph.is_directed() and graph and has_rotations:
+        return _of_rotations(graph)
+    raise NoEmbeddingError(
+        f"a networkx.{type(graph).__name__} has no clockwise order; "
+        "is_planar, embedding = networkx.check_planarity(graph) makes one of a planar graph, "
+        "and a MultiGraph has one if each node has the attribute `rotation`: a list of (neighbour, key)"
+    )
+
+
+def _of_rotations(graph: Any) -> Doors:
+    """The doors of a `networkx.MultiGraph` whose nodes have rotations."""
+    degrees: list[int] = []
+    ends: dict[tuple[frozenset[Hashable], Hashable], list[tuple[Hashable, int]]] = {}
+    for vertex, rotation in graph.nodes(data="rotation"):
+        order = ordered(rotation)
+        if order is None:
+            raise WorldTypeError(f"the rotation of node {vertex!r} is a list: {unordered(rotation)}")
+        for number, entry in enumerate(order, start=sum(degrees)):
+            try:
+                neighbour, key = entry
+                is_edge = graph.has_edge(vertex, neighbour, key)
+            except (TypeError, ValueError):
+                is_edge = False
+            if not is_edge:
+                text = f"{shown(entry)} in the rotation of node {vertex!r} is not (neighbour, key)"
+                raise MissingEdgeError(f"{text} of an edge there")
+            ends.setdefault((frozenset((vertex, neighbour)), key), []).append((vertex, number))
+        degrees.append(len(order))
+    opposite = [0] * sum(degrees)
+    for one, other, key in graph.edges(keys=True):
+        found = ends.get((frozenset((one, other)), key), [])
+        if sorted((vertex == one, vertex == other) for vertex, _ in found) != sorted(
+            [(True, one == other), (one == other, True)]
+        ):
+            raise MissingEdgeError(
+                f"the edge {(one, other, key)!r} is not once in the rotation of each end (a loop: twice)"
+            )
+        (_, here), (_, there) = found
+        opposite[here], opposite[there] = there, here
+    if not opposite:
+        raise NoEdgeError("there is no edge; a world has at least one")
+    return Doors(list(graph), degrees, opposite)
 
 
 # Permutations

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from typing import Callable, Union
 
 from . import _core
-from .errors import MarkerFunctionError, ToposlamError
+from .errors import MarkerFunctionError, ToposlamError, UnknownMarkerError
 from .threads import raise_in
 from .worlds import Dart, World
 
@@ -39,6 +39,10 @@ class OwnPercept:
     degree: int
     marker: Hashable
 
+    def __str__(self) -> str:
+        sighting = "no marker" if self.marker is None else f"marker {self.marker!r}"
+        return f"{self.degree} door{'' if self.degree == 1 else 's'}, {sighting}"
+
 
 class _Interrupted(BaseException):
     """Raised in the thread that calls a marker's function, which cannot catch it by accident."""
@@ -58,19 +62,22 @@ class Sightings:
         names = [f"v{number}" for number in range(len(degrees))]
         return self.of_world(World._of(_core.World.from_doors(degrees, opposite, names, "world", "", 0)))
 
-    def of_world(self, world: World) -> list[list[int]]:
-        """The same for a world. Raises `MarkerFunctionError` if the function gives something else when it is
-        called again, or for the same pose in a copy with other names and numbers."""
+    def of_world(self, world: World, placed: Sequence[int] | None = None) -> list[list[int]]:
+        """The same for a world, and for the darts that place the marker, by their numbers; all, unless they
+        are given. Raises `MarkerFunctionError` if the function gives something else when it is called again,
+        or for the same pose in a copy with other names and numbers."""
         with self._lock:
             self._thread = threading.get_ident()
         try:
-            rows = self._rows(world, world.darts())
-            self._compare(world, rows, self._rows(world, world.darts()), "gives {}, and then {}")
+            poses = world.darts()
+            placed = range(len(poses)) if placed is None else placed
+            rows = self._rows(world, poses, placed)
+            self._compare(world, placed, (rows, self._rows(world, poses, placed)), "gives {}, and then {}")
             copy, images = _renamed(world)
             self._compare(
                 world,
-                rows,
-                self._rows(copy, images),
+                placed,
+                (rows, self._rows(copy, images, placed)),
                 "gives {}, and {} in a copy with other names, order of vertices and first doors: "
                 "a robot knows none of these",
             )
@@ -90,22 +97,35 @@ class Sightings:
 
     def percept(self, sensed: _core.Percept) -> OwnPercept:
         """A percept with the value of the function in place of its number."""
-        values = {number: value for value, number in self._numbers.items()}
         number = sensed.marker or 0
-        return OwnPercept(sensed.degree, values[number] if isinstance(number, int) else None)
+        return OwnPercept(sensed.degree, self._values()[number] if isinstance(number, int) else None)
 
-    def _rows(self, world: World, poses: list[Dart]) -> list[list[int]]:
-        """The numbers of the sightings at poses, for each of them as the start."""
-        return [[self._number(pose, at) for pose in poses] for at in map(world.with_start, poses)]
+    def at_start(self, world: World) -> list[OwnPercept]:
+        """What a robot senses at each pose of a world, whose start places the marker."""
+        (row,) = self.of_world(world, [world.facing()])
+        values = self._values()
+        return [
+            OwnPercept(world.degree(pose.vertex), values[number]) for pose, number in zip(world.darts(), row)
+        ]
 
-    def _compare(self, world: World, rows: list[list[int]], others: list[list[int]], what: str) -> None:
+    def _values(self) -> dict[int, Hashable]:
+        return {number: value for value, number in self._numbers.items()}
+
+    def _rows(self, world: World, poses: list[Dart], placed: Sequence[int]) -> list[list[int]]:
+        """The numbers of the sightings at poses, for each of those that place the marker."""
+        worlds = [world.with_start(poses[number]) for number in placed]
+        return [[self._number(pose, at) for pose in poses] for at in worlds]
+
+    def _compare(
+        self, world: World, placed: Sequence[int], rows: tuple[list[list[int]], list[list[int]]], what: str
+    ) -> None:
         """Raises `MarkerFunctionError` if the sightings in a world are not those of another time or copy."""
         poses = world.darts()
-        for placed, row, other in zip(poses, rows, others):
+        for number, row, other in zip(placed, *rows):
             for pose, one, two in zip(poses, row, other):
                 if one != two:
-                    values = {number: value for value, number in self._numbers.items()}
-                    at = f"pose {pose.vertex}:{pose.index} in {world.with_start(placed)!r}"
+                    values = self._values()
+                    at = f"pose {pose.vertex}:{pose.index} in {world.with_start(poses[number])!r}"
                     differ = what.format(repr(values[one]), repr(values[two]))
                     raise MarkerFunctionError(f"the marker's function at {at} {differ}")
 
@@ -155,3 +175,32 @@ def of_core(marker: Marker) -> Union[str, Sightings]:
     if callable(marker):
         return Sightings(marker)
     raise MarkerFunctionError(f"a marker is a name or a function of (pose, world), not {marker!r}")
+
+
+def check_marker(marker: object) -> None:
+    """Raises an exception if this is neither the name of a marker nor a function."""
+    if not callable(marker) and marker not in MARKERS:
+        raise UnknownMarkerError(
+            f"{marker!r} is not a marker; they are {', '.join(MARKERS)}, and functions of (pose, world)"
+        )
+
+
+def sensed(marker: Marker, start: _core.Start, world: World | None) -> Union[str, list[OwnPercept]]:
+    """A marker as a robot at a start takes it: its name, or what the robot senses at each pose of the start.
+    The start is that of `world`, if that is given."""
+    if isinstance(marker, str):
+        return marker
+    if world is None:
+        return Sightings(marker).at_start(World._of(start.world("world")))
+    percepts = Sightings(marker).at_start(world)
+    return [percepts[dart] for dart in world._core.discovery_order(world.facing())]
+
+
+def drawn(marker: Marker) -> str:
+    """A marker in a picture: what a function of a pose adds to percepts lies nowhere."""
+    return marker if isinstance(marker, str) else "none"
+
+
+def marker_name(marker: Marker) -> str:
+    """The name of a marker in a message."""
+    return marker if isinstance(marker, str) else getattr(marker, "__name__", "own")

@@ -8,11 +8,10 @@ from typing import Union
 
 from . import _core
 from .comparisons import Action
-from .errors import UnknownMarkerError
-from .explorers import Clock, Explorer, check_explorer, judged
-from .failures import failure_of
+from .explorers import Clock, Explorer, check_explorer, judged, mapped
+from .failures import failure_of, run_shown
 from .limits import MAX_MOVES, SECONDS, check_limit, check_run_limits, check_unused
-from .markers import MARKERS
+from .markers import Marker, check_marker, drawn, sensed
 from .worlds import Dart, Picture, World, world_of
 
 
@@ -22,17 +21,17 @@ class Run:
 
     world: World
     algorithm: str
-    marker: str
+    marker: Marker
     """The kind of marker that the robot used."""
     moves: int
     actions: tuple[Action, ...]
     """What the robot did: doors, and "pick-up" and "drop"."""
-    map: World | None
-    """The map, for an algorithm of this package."""
-    pose: Dart | None
+    map: World
+    """The map, with its start."""
+    pose: Dart
     """The robot's pose in the map."""
     story: str
-    """The run, round by round; empty for an explorer of your own."""
+    """The run, round by round, or move by move for an explorer of your own."""
 
     @cached_property
     def certificate(self) -> int | None:
@@ -41,9 +40,8 @@ class Run:
         return len(self.world.certificate()) if self.marker == "directional" else None
 
     def draw(self) -> Picture:
-        """The map, or else the world."""
-        drawn = self.world if self.map is None else self.map
-        return drawn.draw(caption=f"mapped in {self.moves} moves")
+        """The map."""
+        return self.map.draw(caption=f"mapped in {self.moves} moves", marker=drawn(self.marker))
 
     def _repr_svg_(self) -> str:
         return self.draw().svg
@@ -57,20 +55,20 @@ def explore(
     algorithm: Union[str, Explorer] = "algorithm1",
     *,
     max_darts: int | None = None,
-    marker: str | None = None,
+    marker: Marker | None = None,
     max_moves: int | None = None,
     seconds: float | None = None,
 ) -> Run:
     """Maps a world with `"algorithm1"`, `"folding"`, `"movable"`, or with an explorer of your own.
 
-    `marker`, the kind of marker of the robot (`"directional"`), `max_moves` (100,000 moves, pick-ups and
-    drops) and `seconds` (10; `math.inf` is no limit) are for explorers. `max_darts` (1,000,000), the most
-    darts of the map, is for the algorithms.
+    `marker`, the kind of marker of the robot (`"directional"`) or a function (see `MarkerFunction`),
+    `max_moves` (100,000 moves, pick-ups and drops) and `seconds` (10; `math.inf` is no limit) are for
+    explorers. `max_darts` (1,000,000), the most darts of the map, is for the algorithms.
 
     Raises an `ExplorerError` of the class that is the cause if an explorer fails or reaches a limit;
     `MapTooLargeError` or `NotSimpleError` for an algorithm; `WorldTypeError` or `NoStartError`;
-    `UnknownAlgorithmError`, `UnknownMarkerError`, `SizeError`, or `UnusedOptionError` for an option that is
-    not for this explorer or algorithm.
+    `UnknownAlgorithmError`, `UnknownMarkerError`, `MarkerFunctionError`, `SizeError`, or `UnusedOptionError`
+    for an option that is not for this explorer or algorithm.
 
     >>> import toposlam as ts
     >>> run = ts.explore(ts.World.load("worlds/shape-6.toml"), algorithm="folding")
@@ -105,17 +103,18 @@ def explore(
     )
 
 
-def _explored(world: World, explorer: Explorer, marker: str, max_moves: int, seconds: float) -> Run:
-    if marker not in MARKERS:
-        raise UnknownMarkerError(f"{marker!r} is not a marker; they are {', '.join(MARKERS)}")
+def _explored(world: World, explorer: Explorer, marker: Marker, max_moves: int, seconds: float) -> Run:
+    check_marker(marker)
     check_run_limits(max_moves, seconds)
-    start = _core.Start.of(world._core, world.facing())
-    robot = start.robot(marker, max_moves)
+    start = _core.Start.of(world._core, world.facing(), 0)
+    robot = start.robot(sensed(marker, start, world), max_moves)
     with Clock(seconds) as clock:
-        error = judged(explorer, start, robot, clock)
+        error, answer = judged(explorer, start, robot, clock)
     if error is not None:
-        text = f"{world.name} {world._core.start_text(world.facing())}"
-        error.failure = failure_of(world, text, error, robot, marker, 0)
+        error.failure = failure_of(world, (error, answer), robot, marker, 0)
         raise error
     name = getattr(explorer, "__name__", type(explorer).__name__)
-    return Run(world, name, marker, robot.moves, tuple(robot.actions), None, None, "")
+    map_, pose = mapped(answer, f"{world.name}-map")
+    actions = tuple(robot.actions)
+    shown = run_shown(world, marker, actions, (map_._core, "map"), "The map and the pose are right")
+    return Run(world, name, marker, robot.moves, actions, map_, pose, shown["story"])

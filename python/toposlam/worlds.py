@@ -9,16 +9,14 @@ import warnings
 from collections.abc import Hashable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from . import _core
 from ._core import Robot
 from ._core import World as CoreWorld
 from .errors import (
     FrozenError,
-    NoEmbeddingError,
     NoStartError,
-    NotSimpleError,
     PictureError,
     RenamedVertexWarning,
     UnknownStartError,
@@ -29,6 +27,9 @@ from .errors import (
 from .limits import MAX_MOVES, check_limit
 from .maps import doors_of, is_int, of_permutations, ordered, unordered
 from .progress import library
+
+if TYPE_CHECKING:
+    from .markers import Marker
 
 
 class Dart(NamedTuple):
@@ -69,6 +70,11 @@ class Picture:
             raise PictureError(f"{file}: the name of a picture ends with .svg or .png")
 
 
+def counted(number: int, one: str, several: str) -> str:
+    """A number and its noun."""
+    return f"{number} {one if number == 1 else several}"
+
+
 class World:
     """A connected embedded graph: each vertex has its edges in clockwise order.
 
@@ -78,7 +84,8 @@ class World:
     * a dict of far ends, for loops and parallel edges: door `i` of vertex `v` leads to `(w, j)`, door `j` of
       `w`;
     * a list of such lists: its vertices are 0, 1, and so on;
-    * a `networkx.PlanarEmbedding`.
+    * a `networkx.PlanarEmbedding`, or a `networkx.MultiGraph` whose nodes have an attribute `rotation`: a
+      list of `(neighbour, key)`, the edges in clockwise order; a loop is in it twice.
 
     `start` is the dart behind the robot at the start, along which a directional marker points. Without
     one, it is the first door of the first vertex. A vertex has the name `str(vertex)`, with `_` for what no
@@ -200,16 +207,14 @@ class World:
         return (self.name, self.to_json()) == (other.name, other.to_json())
 
     def __hash__(self) -> int:
-        return hash((tuple(self._opposite), self._core.start))
+        return hash((tuple(self._degree.values()), tuple(self._opposite), self._core.start))
 
     def __repr__(self) -> str:
-        vertices, edges = self.vertex_count, self.edge_count
         start = self._core.start
         at = "no start" if start is None else f"start {self._core.start_text(start)}"
-        return (
-            f"<World {self.name}: {vertices} {'vertex' if vertices == 1 else 'vertices'}, "
-            f"{edges} edge{'' if edges == 1 else 's'}, genus {self.genus}, {at}>"
-        )
+        vertices = counted(self.vertex_count, "vertex", "vertices")
+        edges = counted(self.edge_count, "edge", "edges")
+        return f"<World {self.name}: {vertices}, {edges}, genus {self.genus}, {at}>"
 
     @property
     def name(self) -> str:
@@ -354,6 +359,82 @@ class World:
             return self.with_start(None).is_isomorphic(other.with_start(None))
         return self._core.code() == other._core.code()
 
+    def starts(self) -> tuple[World, ...]:
+        """The world with each of its starts, up to isomorphism: `2 m` divided by the number of automorphisms.
+        The name of each ends with its number.
+
+        >>> import toposlam as ts
+        >>> path = ts.World({1: [2], 2: [1, 3], 3: [2]}, name="path")
+        >>> path.starts()  # doctest: +NORMALIZE_WHITESPACE
+        (<World path-0: 3 vertices, 2 edges, genus 0, start 1:2>,
+         <World path-1: 3 vertices, 2 edges, genus 0, start 2:1>)
+        """
+        return tuple(
+            World._of(self._core.with_start(dart, f"{self.name}-{number}", self.about), self._vertices)
+            for number, dart in enumerate(self._core.start_darts())
+        )
+
+    def canonical(self) -> World:
+        """A world without start and with new names that is isomorphic as a graph. It is equal for two worlds
+        exactly if they are isomorphic as graphs.
+
+        >>> import toposlam as ts
+        >>> one = ts.World({"a": ["b"], "b": ["a", "c"], "c": ["b"]})
+        >>> one.canonical() == ts.World({1: [2, 3], 2: [1], 3: [1]}).canonical()
+        True
+        """
+        return World._of(self._core.canonical()).with_start(None)
+
+    def automorphisms(self) -> tuple[dict[Dart, Dart], ...]:
+        """The symmetries of the graph, without its start: bijections of darts that keep edges and clockwise
+        orders. The identity comes first.
+
+        >>> import toposlam as ts
+        >>> cycle = ts.World.load("worlds/cycle-4.toml")
+        >>> len(cycle.automorphisms())
+        8
+        """
+        places = self._places
+        return tuple(
+            dict(zip(places, (places[image] for image in images))) for images in self._core.automorphisms()
+        )
+
+    def faces(self) -> tuple[tuple[Dart, ...], ...]:
+        """The faces: the darts along which a robot goes around each, if it takes door 1 at every vertex. Each
+        dart is in one face, and `vertices - edges + faces` is `2 - 2 genus`.
+
+        >>> import toposlam as ts
+        >>> [len(face) for face in ts.World.load("worlds/figure-1a.toml").faces()]
+        [3, 3, 3, 3, 4]
+        """
+        faces = []
+        seen: set[Dart] = set()
+        for first in self._places:
+            face: list[Dart] = []
+            dart = first
+            while dart not in seen:
+                seen.add(dart)
+                face.append(dart)
+                dart = self.clockwise(self.opposite(dart))
+            if face:
+                faces.append(tuple(face))
+        return tuple(faces)
+
+    def to_permutations(self) -> tuple[list[int], list[int]]:
+        """Two permutations of the darts, as lists of images counted from 0: the other end of each edge, and
+        the next dart clockwise. A dart has the number of its place in `darts()`. The inverse of
+        `from_permutations`.
+
+        >>> import toposlam as ts
+        >>> ts.World({1: [2], 2: [1, 3], 3: [2]}).to_permutations()
+        ([1, 0, 3, 2], [0, 2, 1, 3])
+        """
+        clockwise = []
+        for vertex, first in self._first.items():
+            degree = self._degree[vertex]
+            clockwise += [first + (index + 1) % degree for index in range(degree)]
+        return list(self._opposite), clockwise
+
     def mirror_image(self) -> World:
         """The same graph with every order reversed."""
         return World._of(self._core.mirror_image(), self._vertices)
@@ -372,12 +453,12 @@ class World:
         """
         return tuple(_core.certificate(self._core, self.facing()))
 
-    def robot(self, marker: str = "directional", max_moves: int = MAX_MOVES) -> Robot:
-        """A robot at the start, with a kind of marker. It makes at most `max_moves` moves, pick-ups and
-        drops.
+    def robot(self, marker: Marker = "directional", max_moves: int = MAX_MOVES) -> Robot:
+        """A robot at the start, with a kind of marker, or with one that is a function: see `MarkerFunction`.
+        It makes at most `max_moves` moves, pick-ups and drops.
 
-        Raises `NoStartError`, `UnknownMarkerError` or `SizeError`; the robot raises `NoSuchDoorError`,
-        `DoorTypeError`, `NoMarkerError` or `OutOfMovesError` if an action is not possible.
+        Raises `NoStartError`, `UnknownMarkerError`, `MarkerFunctionError` or `SizeError`; the robot raises
+        `NoSuchDoorError`, `DoorTypeError`, `NoMarkerError` or `OutOfMovesError` if an action is not possible.
 
         >>> import toposlam as ts
         >>> robot = ts.World.load("worlds/figure-1a.toml").robot()
@@ -386,8 +467,12 @@ class World:
         >>> robot.go(1)
         Percept(degree=3, marker=None)
         """
+        from .markers import Sightings, check_marker
+
         check_limit("max_moves", max_moves)
-        return _core.Robot(self._core, self.facing(), marker, max_moves)
+        check_marker(marker)
+        sensed = marker if isinstance(marker, str) else Sightings(marker).at_start(self)
+        return _core.Robot(self._core, self.facing(), sensed, max_moves)
 
     def draw(
         self, *, title: str | None = None, caption: str | None = None, marker: str | None = None
@@ -422,15 +507,29 @@ class World:
         file.write_text(texts[file.suffix](), encoding="utf-8")
 
     def to_networkx(self) -> Any:
-        """A `networkx.PlanarEmbedding`; for simple worlds in the plane."""
+        """A `networkx.PlanarEmbedding` of a simple world in the plane. Of any other world, a
+        `networkx.MultiGraph`: the attribute `rotation` of each node has the edges in clockwise order, as
+        `(neighbour, key)`. `World(...)` reads both; the start is not in them.
+
+        >>> import toposlam as ts
+        >>> ts.World.load("worlds/two-loops-torus.toml").to_networkx().nodes(data="rotation")
+        NodeDataView({'v': [('v', 0), ('v', 1), ('v', 0), ('v', 1)]}, data='rotation')
+        """
         networkx = library("networkx", "to_networkx")
-        if not self.is_simple:
-            raise NotSimpleError(f"{self.name} has a loop or parallel edges")
-        if self.genus > 0:
-            raise NoEmbeddingError(f"{self.name} is not in the plane: its genus is {self.genus}")
-        embedding = networkx.PlanarEmbedding()
-        embedding.set_data({vertex: list(listed) for vertex, listed in self.neighbours.items()})
-        return embedding
+        if self.is_simple and self.genus == 0:
+            embedding = networkx.PlanarEmbedding()
+            embedding.set_data({vertex: list(listed) for vertex, listed in self.neighbours.items()})
+            return embedding
+        graph = networkx.MultiGraph()
+        rotations: dict[str, list[tuple[str, int]]] = {vertex: [] for vertex in self._first}
+        for vertex, rotation in rotations.items():
+            graph.add_node(vertex, rotation=rotation)
+        keys: dict[int, int] = {}
+        for dart, (place, other) in enumerate(zip(self._places, self._opposite)):
+            neighbour = self._places[other].vertex
+            keys[dart] = keys[other] if other < dart else graph.add_edge(place.vertex, neighbour)
+            rotations[place.vertex].append((neighbour, keys[dart]))
+        return graph
 
 
 def world_of(value: object) -> World:
@@ -442,9 +541,11 @@ def world_of(value: object) -> World:
     )
 
 
-def other_world(world: World, marker: str, actions: tuple[int | str, ...]) -> tuple[World | None, bool]:
+def other_world(world: World, marker: object, actions: tuple[int | str, ...]) -> tuple[World | None, bool]:
     """The smallest other world in which a robot that does the same senses the same, and whether it is known to be
     the smallest."""
+    if not isinstance(marker, str):
+        return None, False
     doors = [action for action in actions if isinstance(action, int)]
     found = _core.other_world(world._core, world.facing(), marker, doors)
     return (None, False) if found is None else (World._of(found[0]), found[1])

@@ -133,6 +133,6 @@ impl ReportedRun {
         beside: Option<&'a (Beside, NamedWorld)>,
     ) -> ExplorerRun<'a> {
         let beside = beside.map(|(kind, world)| (*kind, world));
-        ExplorerRun { world, marker, actions: &self.actions, beside }
+        ExplorerRun { world, marker, actions: &self.actions, percepts: None, beside }
     }
 }

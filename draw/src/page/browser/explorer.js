@@ -14,8 +14,9 @@ const REST = 380;
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 const figures = [...document.querySelectorAll(".world")];
 const panels = figures.map((figure) => new Panel(figure, () => {}));
-const steps = data.steps.map(({ action, states }) => ({
+const steps = data.steps.map(({ action, percept, states }) => ({
   action,
+  percept,
   // Beside the world, null where the action is not possible there.
   states: data.sides.map((side, at) => (states[at] === null ? null : side.states[states[at]])),
 }));
@@ -33,7 +34,7 @@ const called = (action) => (action === null ? "the start" : isDoor(action) ? `do
 const rows = steps.map((step, number) => {
   const [here, ...beside] = step.states;
   const row = document.createElement("tr");
-  const texts = [number, step.action ?? "start", here.text, here.percept];
+  const texts = [number, step.action ?? "start", here.text, step.percept];
   for (const text of [...texts, ...beside.map((there) => there?.percept ?? NOT_POSSIBLE)]) {
     row.insertCell().textContent = text;
   }
@@ -46,12 +47,12 @@ find(".percepts tbody").append(...rows);
 /** Shows a step; with a `duration`, in milliseconds, the robots travel there. */
 function show(number, duration = 0) {
   at = Math.min(Math.max(number, 0), last);
-  const { action, states } = steps[at];
+  const { action, percept, states } = steps[at];
   for (const [side, panel] of panels.entries()) {
     const state = states[side];
     figures[side].classList.toggle("differs", at === difference);
     figures[side].querySelector(".state").textContent = state?.text ?? "";
-    figures[side].querySelector(".percept").textContent = state?.percept ?? NOT_POSSIBLE;
+    figures[side].querySelector(".percept").textContent = side === 0 ? percept : (state?.percept ?? NOT_POSSIBLE);
     if (state) panel.show(state, () => true, still.matches ? 0 : duration);
   }
   for (const [row, element] of rows.entries()) element.classList.toggle("now-row", row === at);
@@ -61,7 +62,7 @@ function show(number, duration = 0) {
   slider.setAttribute("aria-valuetext", now);
   find(".now").textContent = now;
   const apart = at === difference ? ` Here they differ: ${states[1]?.percept ?? NOT_POSSIBLE}.` : "";
-  say(`Step ${at}, ${called(action)}: ${states[0].percept}.${apart}`);
+  say(`Step ${at}, ${called(action)}: ${percept}.${apart}`);
 }
 
 function pause() {

@@ -30,7 +30,11 @@ pub fn explorer_page(title: &str, ending: &str, run: &ExplorerRun) -> String {
             let action = step.checked_sub(1).map(|before| run.actions[before].to_string());
             let there = robots_beside.get(step).zip(beside.as_ref());
             let there = there.map(|(robot, (_, side))| side.place(robot.state()));
-            json!({ "action": action, "states": [world.place(robot.state()), there] })
+            json!({
+                "action": action,
+                "percept": run.percept(step, robot),
+                "states": [world.place(robot.state()), there],
+            })
         })
         .collect();
     let sides = [Some(&world), beside.as_ref().map(|(_, side)| side)];
