@@ -161,12 +161,14 @@ fn a_check_goes_on_with_two_processes_after_one_of_three_was_killed() {
     let recorded = || fs::read_to_string(&journal).map_or(0, |text| text.lines().count());
     let mut processes = stage.start(&command);
     until("some units are recorded", 60, || recorded() > 100);
+    let killed = stage.address(2);
     processes[2].signal("-KILL");
     let _ = processes.remove(2);
     for process in processes {
         let (code, out, error) = ended(&process.ends_within(5));
         assert_eq!((code, &*out), (Some(3), ""), "{error}");
-        assert!(error.contains(" is lost: the work is not finished"), "{error}");
+        let message = format!("process 2 ({killed}) is lost: the work is not finished");
+        assert!(error.contains(&message), "{error}");
         assert!(error.contains("with the same --journal"), "{error}");
         assert_eq!(error.lines().filter(|line| line.contains("lost")).count(), 1, "{error}");
     }

@@ -16,7 +16,7 @@ use toposlam_model::enumerate::Watch;
 
 use crate::{
     ConnectError, Hosts, Setting,
-    connect::Connector,
+    connect::{Connector, PATIENCE},
     dataflow::{self, Job, JobEvent, JobMessage, TimelyWorker},
     loss,
 };
@@ -65,7 +65,7 @@ pub struct ClusterProcess {
 
 impl ClusterProcess {
     /// Connects to the other processes, and waits for them. `settings` must be the same in all of them.
-    /// `waiting` is called once with the names of those that are not there soon. `lost` is called with the
+    /// `waiting` is called with the names of those that are not there soon, and again if others are missing. `lost` is called with the
     /// name of a process to which the connection is lost; it should end this process.
     ///
     /// # Errors
@@ -81,7 +81,8 @@ impl ClusterProcess {
     ) -> Result<Self, ClusterError> {
         let own = [("the list of hosts".to_owned(), hosts.all())];
         let settings = &[settings, &own[..]].concat();
-        let streams = Connector { hosts, process, settings, watch, waiting }.connect()?;
+        let streams =
+            Connector { hosts, process, settings, watch, waiting, patience: PATIENCE }.connect()?;
         let all = hosts.clone();
         loss::on_loss(move |other| lost(&all.name(other)));
         let (commands, received) = mpsc::channel::<Command>();

@@ -22,6 +22,7 @@ mod check;
 mod cluster;
 mod connect;
 mod dataflow;
+mod handshake;
 mod hosts;
 mod loss;
 mod search;

@@ -7,12 +7,18 @@ use std::{
     panic::{self, AssertUnwindSafe},
     sync::atomic::{AtomicBool, Ordering},
     thread,
+    time::Duration,
 };
+
+/// The time from the loss of a process to the end of this one. Without it, the others could notice the end of this
+/// one first.
+const LINGER: Duration = Duration::from_secs(1);
 
 /// Set when the work is done: a connection that breaks now is not lost.
 static DONE: AtomicBool = AtomicBool::new(false);
 
-/// Calls `lost` with the number of the process to which the connection is lost, once. It should not return.
+/// Calls `lost` with the number of the process to which the connection is lost first, once, a second later: then all
+/// processes name the one that ended, and not one that ended for that reason. It should not return.
 pub(crate) fn on_loss(lost: impl Fn(usize) + Send + Sync + 'static) {
     static LOST: AtomicBool = AtomicBool::new(false);
     let usual = panic::take_hook();
@@ -22,7 +28,12 @@ pub(crate) fn on_loss(lost: impl Fn(usize) + Send + Sync + 'static) {
             _ if DONE.load(Ordering::Relaxed) => {}
             None => usual(panic),
             Some(_) if LOST.swap(true, Ordering::Relaxed) => {}
-            Some(process) => lost(process),
+            Some(process) => {
+                thread::sleep(LINGER);
+                if !DONE.load(Ordering::Relaxed) {
+                    lost(process);
+                }
+            }
         }
     }));
 }
