@@ -41,6 +41,7 @@ use super::{
     progress::Progress,
     run_choices,
     text::counted,
+    thread_option::ThreadOption,
     version::version,
     write_world_or_picture,
 };
@@ -141,9 +142,8 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "FILE")]
     failed: Option<PathBuf>,
 
-    /// Number of threads, up to 1024 [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(super) threads: Option<u16>,
+    #[command(flatten)]
+    pub(super) threads: ThreadOption,
 
     /// Print one JSON object for each number of edges
     #[arg(long)]
@@ -281,11 +281,12 @@ impl CheckArguments {
         let mut sizes = work.into_iter();
         let (mut is_done, mut all_mapped) = (true, true);
         for (edges, work) in sizes.by_ref() {
+            let begun = Instant::now();
             let (line, of_size) =
                 self.check_size(self.line(edges), &work, mapper, cluster.as_mut())?;
             is_done = !line.interrupted;
             all_mapped &= line.failed == 0 && line.unknown.unwrap_or_default() == 0;
-            cases.push(line.ci_case());
+            cases.push(line.ci_case().begun(begun));
             for (first, found) in unmapped.iter_mut().zip([&line.failure, &line.limit]) {
                 *first = first.take().or_else(|| found.clone());
             }

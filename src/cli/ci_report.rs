@@ -7,6 +7,7 @@ use std::{
     env,
     fmt::Write as _,
     path::{Path, PathBuf},
+    time::Instant,
 };
 
 use serde_json::{Value, json};
@@ -37,6 +38,8 @@ pub(super) struct CiCase {
     pub(super) message: String,
     /// The file that was checked, if there is one.
     pub(super) file: Option<PathBuf>,
+    /// The time that the check took, if it was measured.
+    pub(super) seconds: Option<f64>,
 }
 
 impl CiCase {
@@ -52,7 +55,14 @@ impl CiCase {
             outcome: Outcome::Incomplete,
             message: format!("not checked after {after}; --keep-going checks it"),
             file: file.map(Path::to_owned),
+            seconds: None,
         }));
+    }
+
+    /// With the time since the check began.
+    #[must_use]
+    pub(super) fn begun(self, begun: Instant) -> Self {
+        Self { seconds: Some(begun.elapsed().as_secs_f64()), ..self }
     }
 }
 
@@ -96,21 +106,28 @@ impl CiOptions {
     }
 }
 
-/// A JUnit report. What is not known is an error: the test did not come to a result.
+/// A JUnit report. What is not known is an error: the test did not come to a result. Its times were measured; all else
+/// is the same for the same cases.
 fn junit(verb: &str, cases: &[CiCase]) -> String {
+    let time = |seconds: Option<f64>| {
+        seconds.map_or(String::new(), |seconds| format!(" time=\"{seconds:.3}\""))
+    };
+    let measured = cases.iter().filter_map(|case| case.seconds);
+    let total = time(measured.reduce(|sum, seconds| sum + seconds));
     let count = |outcome| cases.iter().filter(|case| case.outcome == outcome).count();
     let (all, failures, errors) =
         (cases.len(), count(Outcome::Violated), count(Outcome::Incomplete));
-    let counts = format!("tests=\"{all}\" failures=\"{failures}\" errors=\"{errors}\"");
+    let counts = format!("tests=\"{all}\" failures=\"{failures}\" errors=\"{errors}\"{total}");
     let mut xml = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"toposlam\" {counts}>\n  \
          <testsuite name=\"toposlam {verb}\" {counts}>\n"
     );
-    for CiCase { name, outcome, message, file } in cases {
+    for CiCase { name, outcome, message, file, seconds } in cases {
         let file = file.as_deref().map_or(String::new(), |file| {
             format!(" file=\"{}\"", attribute(&file.display().to_string()))
         });
         let (name, message) = (attribute(name), attribute(message));
+        let time = time(*seconds);
         // Jenkins shows the attribute, and GitLab the content.
         let end = |element: &str, kind: &str| {
             format!(
@@ -123,8 +140,10 @@ fn junit(verb: &str, cases: &[CiCase]) -> String {
             Outcome::Violated => end("failure", "violated"),
             Outcome::Incomplete => end("error", "not known"),
         };
-        let _ =
-            writeln!(xml, "    <testcase classname=\"toposlam.{verb}\" name=\"{name}\"{file}{end}");
+        let _ = writeln!(
+            xml,
+            "    <testcase classname=\"toposlam.{verb}\" name=\"{name}\"{file}{time}{end}"
+        );
     }
     xml + "  </testsuite>\n</testsuites>\n"
 }
@@ -238,7 +257,7 @@ fn annotations(verb: &str, cases: &[CiCase]) -> String {
     let data = |text: &str| text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
     let property = |text: &str| data(text).replace(':', "%3A").replace(',', "%2C");
     let mut lines = String::new();
-    for CiCase { name, outcome, message, file } in cases {
+    for CiCase { name, outcome, message, file, .. } in cases {
         let level = match outcome {
             Outcome::Holds => continue,
             Outcome::Violated => "error",
@@ -263,6 +282,7 @@ mod tests {
             outcome,
             message: message.to_owned(),
             file: file.map(PathBuf::from),
+            seconds: None,
         };
         [
             case("a", Outcome::Holds, "holds", None),
@@ -283,6 +303,23 @@ mod tests {
             assert!(xml.contains(part), "{part}: {xml}");
         }
         assert_eq!(attribute("a\u{1}b\u{ffff}&"), "a\u{fffd}b\u{fffd}&amp;");
+        assert!(!xml.contains(" time="), "{xml}");
+    }
+
+    #[test]
+    fn a_junit_report_has_the_times_that_were_measured_and_their_sum() {
+        let mut cases = cases();
+        (cases[0].seconds, cases[1].seconds) = (Some(1.25), Some(70.5004));
+        let xml = junit("check", &cases);
+        for part in [
+            "<testsuites name=\"toposlam\" tests=\"3\" failures=\"1\" errors=\"1\" time=\"71.750\">",
+            "<testsuite name=\"toposlam check\" tests=\"3\" failures=\"1\" errors=\"1\" time=\"71.750\">",
+            "name=\"a\" time=\"1.250\"/>",
+            "file=\"a b/c,d.mcap\" time=\"70.500\">",
+            "name=\"d\">",
+        ] {
+            assert!(xml.contains(part), "{part}: {xml}");
+        }
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod text;
 use std::{
     io::Write,
     path::{Path, PathBuf},
+    time::Instant,
 };
 
 use clap::{
@@ -223,6 +224,7 @@ impl ConformArguments {
         let mut logs = SeveralInputs::default();
         let mut cases = Vec::new();
         for path in &self.logs {
+            let begun = Instant::now();
             let judged = self.judge(path, world.as_ref(), &quirks).map(|judged| {
                 let outcome = outcome(judged.checked.judgement.verdict());
                 (judged, outcome)
@@ -235,12 +237,13 @@ impl ConformArguments {
                     print_unread(out, &unread.log, &unread.cause)?;
                 }
                 let message = format!("the log cannot be checked: {}", unread.cause);
-                cases.push(ci_case(path, Outcome::Incomplete, message));
+                cases.push(ci_case(path, Outcome::Incomplete, message).begun(begun));
                 reports.unread.push(unread);
                 continue;
             };
             let report = self.report(out, path, &judged)?;
-            cases.push(ci_case(path, outcome(report.verdict), words::result(&report)));
+            let case = ci_case(path, outcome(report.verdict), words::result(&report));
+            cases.push(case.begun(begun));
             reports.logs.push(report);
         }
         if self.logs.len() > 1 && self.json {
@@ -261,7 +264,7 @@ impl ConformArguments {
             let outcome = if all_covered { Outcome::Holds } else { Outcome::Incomplete };
             logs.add(Ok(((), outcome)));
             let name = "required coverage".to_owned();
-            cases.push(CiCase { name, outcome, message, file: None });
+            cases.push(CiCase { name, outcome, message, file: None, seconds: None });
             reports.required = Some(required);
         }
         self.ci.write("conform", &cases, self.logs.first().map(PathBuf::as_path))?;
@@ -376,7 +379,8 @@ fn outcome(verdict: ConformVerdict) -> Outcome {
 
 /// The result of a log, for CI systems.
 fn ci_case(path: &Path, outcome: Outcome, message: String) -> CiCase {
-    CiCase { name: path.display().to_string(), outcome, message, file: Some(path.to_owned()) }
+    let (name, file) = (path.display().to_string(), Some(path.to_owned()));
+    CiCase { name, outcome, message, file, seconds: None }
 }
 
 impl DriverOption {

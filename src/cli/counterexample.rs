@@ -5,7 +5,7 @@ mod memory;
 mod pairs;
 mod report;
 
-use std::{io::Write, path::PathBuf};
+use std::{io::Write, path::PathBuf, time::Instant};
 
 use clap::ValueEnum;
 use toposlam_model::{
@@ -22,6 +22,7 @@ use super::{
     marker_kinds, output,
     progress::Progress,
     text::counted,
+    thread_option::ThreadOption,
 };
 use memory::MemoryLimit;
 use pairs::WorldPairs;
@@ -105,9 +106,8 @@ pub(super) struct CounterexampleArguments {
     #[arg(long, requires = "expect")]
     keep_going: bool,
 
-    /// Number of threads, up to 1024 [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(super) threads: Option<u16>,
+    #[command(flatten)]
+    pub(super) threads: ThreadOption,
 
     /// Print one JSON object for each number of edges, and one for the smallest pair
     #[arg(long)]
@@ -164,6 +164,7 @@ impl CounterexampleArguments {
         let mut written = None;
         let mut left = searches.iter();
         for (marker, search) in left.by_ref() {
+            let begun = Instant::now();
             let progress = Progress::new(marker.name(), "placed worlds")?;
             let kept = if self.all { KeptPairs::All } else { KeptPairs::Smallest };
             let findings = match &mut cluster {
@@ -174,7 +175,7 @@ impl CounterexampleArguments {
             let findings = match findings {
                 Ok(findings) => findings,
                 Err(unfinished) => {
-                    cases.push(self.ci_case(*marker, edges, Err(&unfinished)));
+                    cases.push(self.ci_case(*marker, edges, Err(&unfinished)).begun(begun));
                     if is_first {
                         self.ci.write("counterexample", &cases, None)?;
                     }
@@ -197,7 +198,7 @@ impl CounterexampleArguments {
             if let Some(cluster) = &mut cluster {
                 report.threads(cluster, *marker)?;
             }
-            cases.push(self.ci_case(*marker, edges, Ok(pairs)));
+            cases.push(self.ci_case(*marker, edges, Ok(pairs)).begun(begun));
             if self.expect == Some(Expectation::None) && pairs > 0 {
                 outcome = Outcome::Violated;
                 if !self.keep_going {
@@ -252,7 +253,7 @@ impl CounterexampleArguments {
             Ok(_) => (Outcome::Violated, "there are worlds that no walk distinguishes".to_owned()),
             Err(unfinished) => (Outcome::Incomplete, unfinished.to_string()),
         };
-        CiCase { name: self.case_name(marker, edges), outcome, message, file: None }
+        CiCase { name: self.case_name(marker, edges), outcome, message, file: None, seconds: None }
     }
 
     fn case_name(&self, marker: &dyn Marker, edges: usize) -> String {

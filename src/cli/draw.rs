@@ -10,10 +10,7 @@ use std::{
 
 use toposlam_model::marker::Marker;
 
-use super::{
-    CliError, Outcome, exit_codes::help_end, input, marker_kinds, output,
-    progress::watch_for_interrupt, write_drawing,
-};
+use super::{CliError, Outcome, exit_codes::help_end, input, marker_kinds, output, write_drawing};
 use view::ViewOptions;
 
 use crate::picture::{WorldPicture, svg};
@@ -29,7 +26,7 @@ Examples:
   toposlam draw worlds/figure-1a.toml --start x:a --out figure-1a.png
   toposlam draw worlds/shape-8.toml --pose 2,8,0 --look vinyl \\
     --effect blur=1.5 --out view.png", view::list_of_effects()),
-    &[(0, "the picture is written"), (2, "bad usage or input")],
+    &[(0, "the picture is written"), (2, "bad usage or input"), (3, "interrupted")],
 ))]
 #[command(mut_args(view::only_with_a_pose))]
 pub(super) struct DrawArguments {
@@ -51,7 +48,6 @@ pub(super) struct DrawArguments {
 
 impl DrawArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        watch_for_interrupt()?;
         if let (Some(pose), Some(out)) = (self.view.pose(), &self.out) {
             output::check_place(out, &["png", "jpg", "jpeg"])?;
             self.view.write(&self.world, pose, self.marker, out)?;

@@ -27,7 +27,7 @@ use super::{
     mapping_marker::{algorithm_for, check_worlds, is_directional, marker_kind},
     method_options::{AuditOption, algorithms},
     output,
-    progress::{StopSignal, watch_for_interrupt},
+    progress::StopSignal,
     run_choices,
     text::print_paragraph,
     write_world_or_picture,
@@ -160,7 +160,6 @@ impl ExploreArguments {
     }
 
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        watch_for_interrupt()?;
         let world = input::read_world(&self.world)?;
         if let Some(command) = &self.explorer.explorer {
             let facing = input::start_of(&world, self.start.as_deref())?;

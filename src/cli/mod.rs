@@ -50,9 +50,10 @@ use toposlam_terminal::{
     CliError, Outcome, children, edge_range, exit_codes, input, json, method_options, outcome,
     output, picture_file, progress,
     report_output::ReportOutput,
-    scene, temporary_folder,
+    scene,
     terminal::{self, TerminalOptions},
-    text, use_threads,
+    text,
+    thread_option::{self, ThreadOption},
 };
 
 use crate::picture::{self, WorldPicture};
@@ -164,9 +165,9 @@ pub fn run(revision: Option<&str>) -> ExitCode {
     let threads = match &arguments.verb {
         Some(Verb::Check(verb)) => verb.threads,
         Some(Verb::Counterexample(verb)) => verb.threads,
-        _ => None,
+        _ => ThreadOption::default(),
     };
-    if let Err(failure) = use_threads(threads) {
+    if let Err(failure) = progress::watch_for_interrupt().and_then(|()| threads.apply()) {
         return failure.report();
     }
     let mut out = ReportOutput::new(io::stdout().lock());

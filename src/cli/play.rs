@@ -103,14 +103,13 @@ impl PlayArguments {
         let starts = Enumeration::new(Each::Start, self.class, edges)
             .map_err(|error| CliError::at("--edges", error))?;
         let progress = Progress::endless("random world", "starts")?;
-        let mut count: u64 = 0;
+        // It takes seconds to visit many starts.
+        let stops = |visited: u64| visited.is_multiple_of(1 << 16) && must_stop();
+        let mut count = 0;
         let counted_all = starts.for_each(&mut |_| {
             count += 1;
-            // It takes seconds to count many starts.
-            let stops = count.is_multiple_of(1 << 16) && must_stop();
-            if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if stops(count) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        progress.finish();
         if counted_all.is_break() {
             return Err(CliError::Interrupted);
         }
@@ -124,11 +123,14 @@ impl PlayArguments {
         let _ = starts.for_each(&mut |found| {
             if left == 0 {
                 chosen = Some(found.graph.clone());
+            }
+            if left == 0 || stops(left) {
                 return ControlFlow::Break(());
             }
             left -= 1;
             ControlFlow::Continue(())
         });
+        progress.finish();
         let graph = chosen.ok_or(CliError::Interrupted)?;
         let name = format!("{}-{}-{}", self.class, self.edges, self.seed);
         Ok(NamedWorld::numbered(&name, "", graph, Some(Dart(0))))

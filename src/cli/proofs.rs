@@ -104,7 +104,8 @@ impl ProofsArguments {
             report.json.flush()?;
             let message = format!("{word} after {number}");
             let file = Some(lemma.file.into());
-            results.push(CiCase { name: name.to_owned(), outcome, message, file });
+            let (name, seconds) = (name.to_owned(), Some(seconds));
+            results.push(CiCase { name, outcome, message, file, seconds });
             checked.push(check);
             if outcome == Outcome::Incomplete {
                 break;

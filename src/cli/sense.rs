@@ -24,7 +24,7 @@ use super::{
     laser_options::LaserOptions,
     outcome::SeveralInputs,
     output, picture_file,
-    progress::{must_stop, watch_for_interrupt},
+    progress::must_stop,
     scene::{SceneLine, rows},
     text::print_hanging,
 };
@@ -53,6 +53,7 @@ clockwise from the entry door.",
     &[
         (0, "all images and scans were sensed, also if a scene is unknown"),
         (2, "bad usage, or an input cannot be used"),
+        (3, "interrupted"),
     ],
 ))]
 pub(super) struct SenseArguments {
@@ -91,7 +92,6 @@ struct ImageReport {
 
 impl SenseArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        watch_for_interrupt()?;
         self.check_options()?;
         input::register(&self.files)?;
         let camera = self.calibration.as_deref().map(input::read_camera).transpose()?;

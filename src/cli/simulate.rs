@@ -382,9 +382,8 @@ fn serve(
     use toposlam_robot::ros1::RobotTopics;
     use toposlam_simulator::ros1::{ServeSummary, serve};
 
-    use super::progress::{must_stop, watch_for_interrupt};
+    use super::progress::must_stop;
 
-    watch_for_interrupt()?;
     let topics = RobotTopics::usual(master);
     let RobotTopics { wheels, odometry, images, scans, marker, .. } = &topics;
     writeln!(out, "A simulated robot at {master}. Ctrl-C ends it.")?;

@@ -25,19 +25,8 @@ mod placed_graph;
 pub mod progress;
 pub mod report_output;
 pub mod scene;
-pub mod temporary_folder;
 pub mod terminal;
 pub mod text;
+pub mod thread_option;
 
 pub use outcome::{CliError, Outcome};
-use toposlam_model::enumerate::threads;
-
-/// Sets the number of threads, if one is given, here or by `RAYON_NUM_THREADS`.
-pub fn use_threads(asked: Option<u16>) -> Result<(), CliError> {
-    if asked.is_none() && std::env::var_os("RAYON_NUM_THREADS").is_none() {
-        return Ok(());
-    }
-    let threads = asked.map_or_else(threads, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    pool.build_global().map_err(|error| CliError::at("--threads", error))
-}

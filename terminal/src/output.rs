@@ -15,17 +15,16 @@ use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
 use super::{
     CliError, children,
     files::{FileUse, files},
-    input, temporary_folder,
+    input,
 };
 
 /// Locked while a file is written.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// Ends the program, and those that it started, when no file is being written. Removes temporary files.
+/// Ends the program, and those that it started, when no file is being written.
 pub fn exit_between_files(code: i32) -> ! {
     children::end_all();
     let _not_writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
-    temporary_folder::remove_all();
     process::exit(code)
 }
 

@@ -1,14 +1,10 @@
 //! The progress bar of long work, and Ctrl-C.
 //!
-//! Long work asks its [`Watch`] whether to stop, so that it can report what it has. Work that does not ask
-//! soon is ended.
+//! Long work asks its [`Watch`] whether to stop, so that it can report what it has. Other work is ended.
 
 use std::{
     fmt,
-    sync::{
-        Once,
-        atomic::{AtomicBool, AtomicU64, Ordering},
-    },
+    sync::atomic::{AtomicBool, AtomicU64, Ordering},
     thread,
     time::Duration,
 };
@@ -27,6 +23,9 @@ static STOP: AtomicBool = AtomicBool::new(false);
 /// Whether a second Ctrl-C also waits for the work to stop.
 static ALWAYS_GRACEFUL: AtomicBool = AtomicBool::new(false);
 
+/// Set when work asks whether to stop.
+static ASKS: AtomicBool = AtomicBool::new(false);
+
 /// Set when work has asked after Ctrl-C: it reports what it has.
 static ANSWERED: AtomicBool = AtomicBool::new(false);
 
@@ -39,6 +38,7 @@ const TICK: Duration = Duration::from_millis(200);
 
 /// Whether work is to stop: after Ctrl-C, or if nobody reads its result.
 pub fn must_stop() -> bool {
+    ASKS.store(true, Ordering::Relaxed);
     let interrupted = STOP.load(Ordering::Relaxed);
     if interrupted {
         ANSWERED.store(true, Ordering::Relaxed);
@@ -73,7 +73,6 @@ pub struct Progress {
 impl Progress {
     /// Shows a bar for work on cases.
     pub fn new(work: &str, unit: &'static str) -> Result<Self, CliError> {
-        watch_for_interrupt()?;
         let bar = if terminal::has_colors() { "{bar:12.cyan/blue}" } else { "{bar:12}" };
         // The message is cut at the end of the line.
         let template = format!("{{prefix}} {bar} {{percent:>3}} %  {{wide_msg}}");
@@ -177,32 +176,30 @@ fn rate_text(seconds: f64, cases: u64, unit: &str) -> String {
     format!("{} {unit}, {rate} a second", grouped(cases.into()))
 }
 
-/// The first Ctrl-C stops the work soon, the second one at once. A file that is being written is completed. Work that
-/// does not ask whether to stop is ended.
+/// From now on the first Ctrl-C, or another signal to terminate, stops work that asks soon, and all else at once; so does
+/// the second one. A file that is being written is completed.
 pub fn watch_for_interrupt() -> Result<(), CliError> {
-    static SET: Once = Once::new();
-    let mut result = Ok(());
-    SET.call_once(|| {
-        result = ctrlc::set_handler(|| {
-            let again = STOP.swap(true, Ordering::Relaxed);
-            if ALWAYS_GRACEFUL.load(Ordering::Relaxed) {
-                return;
-            }
-            if again {
-                output::exit_between_files(3);
-            }
-            // Without a thread, the work still ends at its next question.
-            let _ = thread::Builder::new().spawn(|| {
+    let handler = ctrlc::set_handler(|| {
+        let again = STOP.swap(true, Ordering::Relaxed);
+        if ALWAYS_GRACEFUL.load(Ordering::Relaxed) {
+            return;
+        }
+        if again {
+            output::exit_between_files(3);
+        }
+        // Without a thread, the work still ends at its next question.
+        let _ = thread::Builder::new().spawn(|| {
+            if ASKS.load(Ordering::Relaxed) {
                 thread::sleep(TO_ASK);
-                if ANSWERED.load(Ordering::Relaxed) {
-                    thread::sleep(TO_REPORT);
-                }
-                terminal::print_message("interrupted\n");
-                output::exit_between_files(3);
-            });
+            }
+            if ANSWERED.load(Ordering::Relaxed) {
+                thread::sleep(TO_REPORT);
+            }
+            terminal::print_message("interrupted\n");
+            output::exit_between_files(3);
         });
     });
-    result.map_err(|error| CliError::at("Ctrl-C", error))
+    handler.map_err(|error| CliError::at("Ctrl-C", error))
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! `toposlam counterexample`. Most facts are in `tests/facts/check.txt`.
 
-use std::{collections::BTreeSet, fs, process::Stdio, thread, time::Duration};
+use std::{collections::BTreeSet, fs, process::Stdio};
 
 use toposlam_model::format::world_file;
 
 use super::{Scratch, names_in, numbers, read_world, stderr};
+use crate::process;
 
 /// Each world is in a file. No walk distinguishes the worlds of a pair, and they are not isomorphic.
 #[test]
@@ -33,24 +34,29 @@ fn all_pairs_are_reported_and_written_and_are_pairs() {
     assert_eq!(in_pairs.len() as u64, ambiguous);
 }
 
-#[cfg(unix)]
+#[cfg(target_os = "linux")]
 #[test]
-fn an_interrupted_search_leaves_no_temporary_files() {
+fn a_search_that_ends_early_leaves_no_temporary_files() {
     let scratch = Scratch::new("counterexample_interrupted");
     let temporary = scratch.path("temporary");
     fs::create_dir(&temporary).unwrap();
     let search =
         "counterexample --marker undirected --class multigraph --max-edges 9 --memory 64MB";
-    let mut search = scratch.command(search);
-    search.env("TMPDIR", &temporary).stdout(Stdio::null()).stderr(Stdio::piped());
-    let search = search.spawn().unwrap();
-    // The search is running once its folder is there. The files in it have no names.
-    while names_in(&temporary).is_empty() {
-        thread::sleep(Duration::from_millis(20));
+    for (signal, code) in [("-INT", Some(3)), ("-TERM", Some(3)), ("-KILL", None)] {
+        let mut search = scratch.command(search);
+        search.env("TMPDIR", &temporary).stdout(Stdio::null()).stderr(Stdio::piped());
+        let search = search.spawn().unwrap();
+        let open = format!("/proc/{}/fd", search.id());
+        let has_file = || {
+            let open = fs::read_dir(&open)
+                .unwrap()
+                .filter_map(|file| fs::read_link(file.ok()?.path()).ok());
+            open.filter(|file| file.starts_with(&temporary)).count() > 0
+        };
+        process::until("it has a temporary file", 60, has_file);
+        process::signal(&search, signal);
+        let output = search.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), code, "{signal}: {}", stderr(&output));
+        assert_eq!(names_in(&temporary), [""; 0], "{signal}");
     }
-    thread::sleep(Duration::from_millis(500));
-    super::interrupt(&search);
-    let output = search.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-    assert_eq!(names_in(&temporary), [""; 0]);
 }

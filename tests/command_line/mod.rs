@@ -60,13 +60,18 @@ use crate::{
 /// Runs the program until it reads its standard input, and sends the signal of Ctrl-C.
 #[cfg(unix)]
 fn interrupted(line: &str) -> Output {
+    interrupted_by("-INT", line)
+}
+
+#[cfg(unix)]
+fn interrupted_by(name: &str, line: &str) -> Output {
     let mut program = program();
     program.args(line.split(' ')).stdin(Stdio::piped());
     let mut program = program.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     // More than a pipe holds: the program reads.
     let mut input = program.stdin.take().unwrap();
     input.write_all(&vec![b' '; 1 << 20]).unwrap();
-    interrupt(&program);
+    signal(&program, name);
     let output = program.wait_with_output().unwrap();
     drop(input);
     output

@@ -1,11 +1,17 @@
 //! Options of every verb: `--version`, `-` for a file of colours, and Ctrl-C. Other facts are in
 //! `tests/facts/options.txt` and `tests/facts/input.txt`.
 
-use std::fs;
+use std::{
+    fs,
+    process::Stdio,
+    thread,
+    time::{Duration, Instant},
+};
 
 use toposlam_logs::{entries::Content, reader::Log, topic_map::TopicMap};
 
 use super::{Scratch, names_in, stderr, stdout};
+use crate::process;
 
 /// The standard output of a successful run with a file as its standard input.
 fn printed(scratch: &Scratch, line: &str, file: &str) -> String {
@@ -50,18 +56,50 @@ fn colours_and_their_images_can_come_from_standard_input() {
     assert!(names.iter().all(|name| name.starts_with("stdin-")), "{names:?}");
 }
 
-/// Ctrl-C ends each verb with 3, also while it reads.
+/// Ctrl-C, and any other signal to terminate, ends each verb with 3, also while it reads.
 #[cfg(unix)]
 #[test]
-fn a_verb_that_is_interrupted_ends_with_3() {
-    for line in [
+fn a_verb_that_is_interrupted_ends_at_once_with_3() {
+    for (number, line) in [
         "draw -",
         "explore -",
+        "play -",
+        "compare - worlds/figure-1a.toml",
+        "check --from -",
+        "simulate -",
+        "conform -",
+        "conform --rerun -",
+        "info -",
+        "info --verify -",
         "camera calibrate -",
         "sense x.png --calibration - --colours x.toml",
-    ] {
-        let output = super::interrupted(line);
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let signal = ["-INT", "-TERM", "-HUP"][number % 3];
+        let begun = Instant::now();
+        let output = super::interrupted_by(signal, line);
         assert_eq!(output.status.code(), Some(3), "{line} {}", stderr(&output));
-        assert_eq!(stderr(&output), "interrupted\n");
+        assert_eq!(stderr(&output), "interrupted\n", "{line}");
+        assert!(output.stdout.is_empty() && begun.elapsed() < Duration::from_secs(5), "{line}");
+    }
+}
+
+/// The signal comes while all starts are counted, or while one of them is chosen.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_game_is_not_written() {
+    let scratch = Scratch::new("play-interrupted");
+    for (signal, milliseconds) in [("-INT", 300), ("-TERM", 1_500)] {
+        let mut play = scratch.command("play --class multigraph --edges 8 --out page.html");
+        let play = play.stderr(Stdio::piped()).spawn().unwrap();
+        thread::sleep(Duration::from_millis(milliseconds));
+        process::signal(&play, signal);
+        let begun = Instant::now();
+        let output = play.wait_with_output().unwrap();
+        assert!(begun.elapsed() < Duration::from_secs(3), "{:?}", begun.elapsed());
+        assert_eq!((output.status.code(), &*stderr(&output)), (Some(3), "interrupted\n"));
+        assert_eq!(scratch.written(), [""; 0]);
     }
 }

@@ -31,7 +31,7 @@ pub trait Watch: Sync {
 impl Watch for () {}
 
 /// The most threads that work is spread over.
-pub const MOST_THREADS: usize = 1024;
+pub const MOST_THREADS: u16 = 1024;
 
 /// The number of threads that work is spread over unless a user gives another one: the variable `RAYON_NUM_THREADS` of the
 /// environment, at most [`MOST_THREADS`], or the number of processors.
@@ -39,7 +39,7 @@ pub const MOST_THREADS: usize = 1024;
 pub fn threads() -> usize {
     let wanted = std::env::var("RAYON_NUM_THREADS").ok().and_then(|number| number.parse().ok());
     let processors = || std::thread::available_parallelism().map_or(1, NonZero::get);
-    wanted.filter(|&number| number > 0).unwrap_or_else(processors).min(MOST_THREADS)
+    wanted.filter(|&number| number > 0).unwrap_or_else(processors).min(MOST_THREADS.into())
 }
 
 /// Works on the parts and merges the results in the order of the parts. The number of threads is that of rayon's pool, or 1 without the feature `rayon`.

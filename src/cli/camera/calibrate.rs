@@ -17,7 +17,7 @@ use toposlam_vision::camera::{
 
 use crate::cli::{
     CliError, Outcome, exit_codes::help_end, input, json::print_line, output, picture_file,
-    progress::watch_for_interrupt, text::three_numbers,
+    text::three_numbers,
 };
 
 /// Find centre, rim and focal length of a spherical mirror in images
@@ -44,6 +44,7 @@ these values in the file, and use it as --initial.",
     &[
         (0, "the rim was found, or was given"),
         (2, "bad usage or input, or no rim was found for certain"),
+        (3, "interrupted"),
     ],
 ))]
 pub(super) struct CalibrateArguments {
@@ -97,7 +98,6 @@ struct CalibrationReport {
 
 impl CalibrateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        watch_for_interrupt()?;
         output::check_place(&self.out, &["toml"])?;
         output::check_place(&self.picture, &["png", "jpg", "jpeg"])?;
         output::check_place(&self.mask_out, &["png"])?;

@@ -368,6 +368,6 @@ impl SizeLine {
             message += "; the other runs of some starts reached a limit";
         }
         let file = self.from.as_ref().map(Into::into);
-        CiCase { name: self.name(), outcome: self.verdict().0, message, file }
+        CiCase { name: self.name(), outcome: self.verdict().0, message, file, seconds: None }
     }
 }

@@ -2,20 +2,21 @@
 
 use std::{
     cmp::Ordering,
-    fs,
-    io::{self, BufReader, BufWriter, Read, Take, Write},
+    env, fs,
+    io::{self, BufReader, BufWriter, IntoInnerError, Read, Seek, Take, Write},
     mem,
+    path::{Path, PathBuf},
     str::FromStr,
     sync::{Mutex, PoisonError},
 };
 
-use ext_sort::{BinaryHeapMerger, ExternalChunk};
+use ext_sort::BinaryHeapMerger;
 use toposlam_model::ambiguity::{
     AmbiguityCandidate, AmbiguitySearch, CandidateSorter, CandidatesInMemory, SortedCandidates,
     SorterError,
 };
 
-use crate::cli::{CliError, temporary_folder::TemporaryFolder};
+use crate::cli::CliError;
 
 /// The memory that a search takes besides what it sorts.
 const BESIDES: u64 = 40_000_000;
@@ -56,35 +57,29 @@ pub(super) fn sorter(
     let Some(limit) = limit else { return Ok(Box::new(CandidatesInMemory::default())) };
     let for_each = (search.candidate_bytes() + FOR_EACH) as u64;
     let at_once = (limit.0 - BESIDES) / for_each;
-    let on_disk = CandidatesOnDisk::new(usize::try_from(at_once).unwrap_or(usize::MAX));
+    let at_once = usize::try_from(at_once).unwrap_or(usize::MAX);
+    let on_disk = CandidatesOnDisk::new(at_once, env::temp_dir());
     Ok(Box::new(on_disk.map_err(|cause| CliError::at("--memory", cause))?))
 }
 
 /// A file of sorted candidates, each after its length.
 struct CandidateFile(Take<BufReader<fs::File>>);
 
-impl ExternalChunk<AmbiguityCandidate> for CandidateFile {
-    type SerializationError = io::Error;
-    type DeserializationError = io::Error;
-
-    fn new(reader: Take<BufReader<fs::File>>) -> Self {
-        Self(reader)
-    }
-
-    fn dump(
-        writer: &mut BufWriter<fs::File>,
-        candidates: impl IntoIterator<Item = AmbiguityCandidate>,
-    ) -> io::Result<()> {
+impl CandidateFile {
+    /// Writes sorted candidates to a file in a folder.
+    fn write(candidates: &[AmbiguityCandidate], folder: &Path) -> io::Result<Self> {
+        let mut writer = BufWriter::new(tempfile::tempfile_in(folder)?);
         for candidate in candidates {
             let bytes = candidate.as_bytes();
             writer.write_all(&(bytes.len() as u32).to_le_bytes())?;
             writer.write_all(bytes)?;
         }
-        Ok(())
+        let mut file = writer.into_inner().map_err(IntoInnerError::into_error)?;
+        let length = file.stream_position()?;
+        file.rewind()?;
+        Ok(Self(BufReader::new(file).take(length)))
     }
-}
 
-impl CandidateFile {
     fn read(&mut self) -> io::Result<AmbiguityCandidate> {
         let mut length = [0; 4];
         self.0.read_exact(&mut length)?;
@@ -112,7 +107,8 @@ struct CandidatesOnDisk {
     /// The most candidates in memory.
     at_once: usize,
     added: Mutex<Added>,
-    folder: TemporaryFolder,
+    /// The folder of the files.
+    folder: PathBuf,
 }
 
 #[derive(Default)]
@@ -123,19 +119,25 @@ struct Added {
 }
 
 impl CandidatesOnDisk {
-    fn new(at_once: usize) -> Result<Self, String> {
-        let folder = TemporaryFolder::new()?;
+    fn new(at_once: usize, folder: PathBuf) -> Result<Self, String> {
+        tempfile::tempfile_in(&folder).map_err(|error| failure(&folder, &error))?;
         Ok(Self { at_once, added: Mutex::default(), folder })
     }
 }
 
+/// The message of a failure in the folder of temporary files.
+fn failure(folder: &Path, error: &io::Error) -> String {
+    let advice = "TMPDIR=DIR chooses another folder for temporary files";
+    format!("{}: {error}; {advice}", folder.display())
+}
+
 /// Moves the candidates in memory to a file. One thread sorts: with several, another part of the search would
 /// begin while this one waits, and wait for the same lock.
-fn spill(added: &mut Added, folder: &TemporaryFolder) -> Result<(), SorterError> {
+fn spill(added: &mut Added, folder: &Path) -> Result<(), SorterError> {
     let mut candidates = mem::take(&mut added.in_memory);
     candidates.sort_unstable();
-    let file = CandidateFile::build(folder.directory(), candidates, None);
-    added.files.push(file.map_err(|error| folder.failure(&error))?);
+    let file = CandidateFile::write(&candidates, folder);
+    added.files.push(file.map_err(|error| failure(folder, &error))?);
     Ok(())
 }
 
@@ -162,14 +164,14 @@ impl CandidateSorter for CandidatesOnDisk {
         let order: fn(&AmbiguityCandidate, &AmbiguityCandidate) -> Ordering = Ord::cmp;
         let merged = BinaryHeapMerger::new(added.files, order);
         Ok(Box::new(merged.map(move |candidate: io::Result<_>| {
-            candidate.map_err(|error| folder.failure(&error).into())
+            candidate.map_err(|error| failure(&folder, &error).into())
         })))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::{io::Seek, iter};
+    use std::iter;
 
     use toposlam_model::{ambiguity::KeptPairs, enumerate::Class, marker::named};
 
@@ -207,24 +209,28 @@ mod tests {
         let reversed: Vec<_> = sorted.iter().rev().cloned().collect();
         assert!(sorted.len() > 1000);
         for at_once in [usize::MAX, 200, 50] {
-            let on_disk = CandidatesOnDisk::new(at_once).unwrap();
-            let folder = on_disk.folder.directory().path().to_owned();
+            let folder = tempfile::tempdir().unwrap();
+            let on_disk = CandidatesOnDisk::new(at_once, folder.path().to_owned()).unwrap();
             on_disk.add(reversed.clone()).unwrap();
             let files = on_disk.added.lock().unwrap().files.len();
             assert_eq!(files, (sorted.len() - 1) / at_once);
             let returned: Result<Vec<_>, _> = Box::new(on_disk).sorted().unwrap().collect();
             assert_eq!(returned.unwrap(), sorted);
-            assert!(!folder.exists());
+            // The files never have names.
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         }
     }
 
     #[test]
     fn a_file_that_cannot_be_written_is_an_error() {
-        let on_disk = CandidatesOnDisk::new(100).unwrap();
-        fs::remove_dir_all(on_disk.folder.directory().path()).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().to_owned();
+        let on_disk = CandidatesOnDisk::new(100, path.clone()).unwrap();
+        folder.close().unwrap();
         let error = on_disk.add(candidates()).unwrap_err().to_string();
-        assert!(error.contains("No such file or directory"), "{error}");
-        assert!(error.contains("toposlam-") && error.contains("TMPDIR=DIR"), "{error}");
+        let begins = format!("{}: No such file or directory", path.display());
+        assert!(error.starts_with(&begins) && error.contains("TMPDIR=DIR"), "{error}");
+        assert_eq!(CandidatesOnDisk::new(100, path).err(), Some(error));
     }
 
     #[test]
@@ -239,7 +245,7 @@ mod tests {
             let mut file = tempfile::tempfile().unwrap();
             file.write_all(bytes).unwrap();
             file.rewind().unwrap();
-            let mut file = CandidateFile::new(BufReader::new(file).take(bytes.len() as u64));
+            let mut file = CandidateFile(BufReader::new(file).take(bytes.len() as u64));
             (file.next().unwrap().is_ok(), file.next().unwrap().map_err(|error| error.kind()))
         };
         assert!(matches!(read(&bytes), (true, Ok(_))));

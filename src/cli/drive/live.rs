@@ -15,7 +15,7 @@ use toposlam_vision::{camera::Camera, colour::ColourModel, sensing::Sensor};
 use super::{CliError, DriveArguments, Outcome, TOPICS};
 use crate::cli::{
     input,
-    progress::{always_stop_gracefully, must_stop, watch_for_interrupt},
+    progress::{always_stop_gracefully, must_stop},
     robot_sensor::{SensorChoice, needs_camera},
     run_capture::RunCapture,
     run_report::{RobotReport, RobotRun, RunReport},
@@ -35,7 +35,6 @@ impl DriveArguments {
             }
             None => (RobotSensor::Laser(Box::default()), LiveSensor::Laser, "scans"),
         };
-        watch_for_interrupt()?;
         always_stop_gracefully();
         let topics = RobotTopics {
             master: self.ros.clone(),

@@ -19,7 +19,8 @@ use std::{
 
 use clap::{Parser, Subcommand};
 use toposlam_terminal::{
-    exit_codes::help_end, report_output::ReportOutput, terminal::TerminalOptions,
+    exit_codes::help_end, progress::watch_for_interrupt, report_output::ReportOutput,
+    terminal::TerminalOptions,
 };
 
 /// Measure sensing, driving, whole runs and single mistakes against the ground truth
@@ -62,6 +63,9 @@ enum What {
 fn main() -> ExitCode {
     let arguments = EvaluateArguments::parse();
     arguments.terminal.apply();
+    if let Err(failure) = watch_for_interrupt() {
+        return failure.report();
+    }
     let mut out = ReportOutput::new(io::stdout().lock());
     let result = match arguments.what {
         What::Vision(vision) => vision.run(&mut out),

@@ -20,15 +20,14 @@ use toposlam_terminal::{
     progress::Progress,
     remark,
     text::{counted, grouped, print_hanging, print_indented, print_rows},
-    use_threads,
+    thread_option::ThreadOption,
 };
 
 /// Options of every measurement.
 #[derive(clap::Args)]
 pub(super) struct ReportArguments {
-    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: ThreadOption,
     /// Print JSON objects, one per line
     #[arg(long)]
     json: bool,
@@ -109,7 +108,7 @@ pub(super) fn measure<R: Send>(
 
 impl ReportArguments {
     pub(super) fn begin(&self) -> Result<EvaluationReport, CliError> {
-        use_threads(self.threads)?;
+        self.threads.apply()?;
         let (text, lines) = (Vec::new(), Vec::new());
         Ok(EvaluationReport { json: self.json, begun: Instant::now(), text, lines })
     }
