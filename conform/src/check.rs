@@ -20,6 +20,7 @@ use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 use super::{
     config::{ConformConfig, RunDriver},
     extract::{Evidence, ExtractConfig, ExtractError, ExtractedRun, extract},
+    frame_content::FrameContents,
     judgement::{JudgeError, Judgement, judge},
     known_world::{Known, KnownWorld, MarkerStart},
     log_head::{LogHead, MarkerNotShown},
@@ -111,8 +112,9 @@ pub enum CheckError {
     Extract(#[from] ExtractError),
     #[error(transparent)]
     MarkerNotShown(#[from] MarkerNotShown),
-    #[error("no junction is visited in its {count} {frames}")]
-    NoVisit { count: u64, frames: &'static str },
+    /// What the images show is known.
+    #[error("no junction is visited in its {count} {frames}{contents}")]
+    NoVisit { count: u64, frames: &'static str, contents: FrameContents },
     #[error(transparent)]
     Judge(JudgeError),
 }
@@ -186,11 +188,13 @@ impl LogCheck<'_> {
         on_events();
         let judgement = judge(events, &config, self.quirks, watch);
         let judgement = judgement.map_err(|error| match (error, &extracted) {
-            (JudgeError::Empty, &ExtractedRun { images: count @ 1.., .. }) => {
-                CheckError::NoVisit { count, frames: "images" }
+            (JudgeError::Empty, run @ &ExtractedRun { images: count @ 1.., .. }) => {
+                let contents = FrameContents::of_images(run);
+                CheckError::NoVisit { count, frames: "images", contents }
             }
             (JudgeError::Empty, &ExtractedRun { scans: count @ 1.., .. }) => {
-                CheckError::NoVisit { count, frames: "laser scans" }
+                let contents = FrameContents::default();
+                CheckError::NoVisit { count, frames: "laser scans", contents }
             }
             (error, _) => CheckError::Judge(error),
         })?;

@@ -12,6 +12,7 @@ mod divergence;
 pub mod earlier_walks;
 mod events;
 mod extract;
+mod frame_content;
 pub mod fuzz;
 mod impossible;
 mod json;
@@ -49,6 +50,7 @@ pub use events::{
 pub use extract::{
     Evidence, ExtractConfig, ExtractError, ExtractedRun, SkippedMessages, extract, infer_events,
 };
+pub use frame_content::{FrameContent, FrameContents};
 pub use impossible::Impossibility;
 pub use json::LogsLine;
 pub use judgement::{

@@ -88,7 +88,7 @@ pub(super) fn scene_of(message: &Scene) -> Option<scene::Scene> {
             })
         }
         "unknown" => {
-            Place::Unknown(REASONS.into_iter().find(|one| one.to_string() == message.reason)?)
+            Place::Unknown(Reason::ALL.into_iter().find(|one| one.to_string() == message.reason)?)
         }
         _ => return None,
     };
@@ -108,8 +108,6 @@ const STATES: [(PathState, &str); 3] = [
 ];
 const UNCLEAR: [Unclear; 3] =
     [Unclear::ClustersAhead, Unclear::SizesDiffer, Unclear::ClusterBehind];
-const REASONS: [Reason; 4] =
-    [Reason::NoFloor, Reason::FewWalls, Reason::NothingFits, Reason::Ambiguous];
 
 pub(super) fn command(stamp: Stamp, state: PathState, command: algorithm2::Command) -> Command {
     let word = STATES.into_iter().find(|(known, _)| *known == state);
@@ -308,7 +306,7 @@ mod tests {
             confidence: 0.8,
         };
         let places = UNCLEAR.map(|why| hallway(HallwayStatus::Unclear(why))).into_iter();
-        let places = places.chain(REASONS.map(Place::Unknown));
+        let places = places.chain(Reason::ALL.map(Place::Unknown));
         let places = places.chain([hallway(HallwayStatus::Clear), Place::Junction(junction)]);
         let marker = |door| MarkerView { position: [0.4, 0.0], axis: 0.2, door };
         for place in places {

@@ -1,13 +1,20 @@
 //! `toposlam sense IMAGE...`, on rendered images.
 
-use std::{f64::consts::PI, sync::LazyLock};
+use std::{f64::consts::PI, io::Cursor, sync::LazyLock};
 
 use image::{ImageFormat, Rgb, RgbImage};
 use serde_json::{Value, json};
+use toposlam_logs::{
+    messages::Stamp,
+    recorder::{IMAGE, ODOM},
+    standard::{CompressedImage, OdometryMessage, Twist},
+    writer::LogWriter,
+};
+use toposlam_model::driving::odometry::Odometry;
 use toposlam_simulator::{BuildingLook, Rig, learned, view_sampler::ViewSampler};
 use toposlam_vision::camera::{Camera, calibration};
 
-use super::{Scratch, has, names_in, objects, stderr, stdout};
+use super::{Scratch, flat, has, names_in, objects, stderr, stdout};
 
 const SIZE: [u32; 2] = [640, 480];
 const FILES: &str = "--calibration camera.toml --colours colours.toml";
@@ -107,15 +114,40 @@ fn a_useless_image_is_unknown_with_the_reason() {
     let of = |colour| RgbImage::from_pixel(SIZE[0], SIZE[1], Rgb(colour));
     // An image of one colour is taken for floor.
     for (image, reason) in [
-        (of([0; 3]), "no-floor"),
-        (of([255; 3]), "no-floor"),
-        (noise, "no-floor"),
+        (of([0; 3]), "too-dark"),
+        (of([255; 3]), "overexposed"),
+        (noise, "mixed-floor"),
         (of([206, 190, 158]), "few-walls"),
     ] {
         image.save(scratch.path("image.png")).unwrap();
         let unknown = json!({ "scene": "unknown", "reason": reason, "marker": null });
         scratch.fact(&format!("sense image.png {FILES}"), 0, &unknown);
     }
+}
+
+/// A camera with its cap on, a lamp, and a file that is no image.
+#[test]
+fn if_no_image_of_a_log_can_be_used_the_error_says_why() {
+    let scratch = scratch("sense_useless_log");
+    let png = |level| {
+        let mut bytes = Cursor::new(Vec::new());
+        let image = RgbImage::from_pixel(SIZE[0], SIZE[1], Rgb([level; 3]));
+        image.write_to(&mut bytes, ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    };
+    let [dark, bright] = [png(0), png(255)];
+    let mut log = LogWriter::new(Vec::new()).unwrap();
+    for (second, image) in (1..).zip([&dark[..], &bright, &dark, b"no image", &dark]) {
+        let stamp = Stamp::from_nanoseconds(second * 1_000_000_000);
+        let odometry = OdometryMessage::new(stamp, &Odometry::default(), Twist::default());
+        log.write(ODOM, stamp.nanoseconds(), &odometry).unwrap();
+        log.write(IMAGE, stamp.nanoseconds(), &CompressedImage::new(stamp, image)).unwrap();
+    }
+    scratch.write("run.mcap", log.finish().unwrap());
+    let error = scratch.error(&format!("conform run.mcap --driver anyone --events images {FILES}"));
+    let cause =
+        "no junction is visited in its 5 images: 3 too dark, 1 not decodable, 1 overexposed";
+    assert!(flat(&error).contains(cause), "{error}");
 }
 
 /// `toposlam-vision` has each error in a calibration and in colours.

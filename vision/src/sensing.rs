@@ -134,10 +134,13 @@ impl Sensor {
         if found != self.camera.image {
             return Err(WrongSize { found, expected: self.camera.image });
         }
-        let Some(gain) = self.model.gain(&self.ring.colours(image)) else {
-            self.view = GroundView::unseen();
-            let scene = Scene { place: Place::Unknown(Reason::NoFloor), marker: None };
-            return Ok((scene, SensingTrace::default()));
+        let gain = match self.model.gain(&self.ring.colours(image)) {
+            Ok(gain) => gain,
+            Err(light) => {
+                self.view = GroundView::unseen();
+                let scene = Scene { place: Place::Unknown(light.into()), marker: None };
+                return Ok((scene, SensingTrace::default()));
+            }
         };
         self.unwrapping.view(image, &self.colours.lit(gain), &mut self.view);
         Ok(interpreted(&self.view, &self.bearings))

@@ -248,7 +248,7 @@ fn images_and_labels_that_do_not_fit_are_rejected() {
         let (image, labels) = taken(Taken { light: [light; 3], noise: 2.0, seed: 1 });
         let refused = training.add(&CAMERA, &image, &labels).unwrap_err();
         assert_eq!(refused, ExampleError::Light(cause));
-        assert_eq!(TRAINED.gain(&FloorRing::new(&CAMERA).colours(&image)), None);
+        assert_eq!(TRAINED.gain(&FloorRing::new(&CAMERA).colours(&image)), Err(cause));
     }
     assert_eq!(training.images(), 0);
     assert_eq!(training.model().unwrap_err(), TrainingError::NoImage);

@@ -101,6 +101,10 @@ pub struct MarkerView {
 crate::words! {
     Reason {
         NoFloor = "no-floor",
+        TooDark = "too-dark",
+        Overexposed = "overexposed",
+        /// The floor beside the robot has no common colour.
+        MixedFloor = "mixed-floor",
         FewWalls = "few-walls",
         NothingFits = "nothing-fits",
         Ambiguous = "ambiguous",

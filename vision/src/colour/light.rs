@@ -3,6 +3,7 @@
 use image::RgbImage;
 use nalgebra::Point2;
 use thiserror::Error;
+use toposlam_model::driving::scene::Reason;
 
 use super::Gain;
 use crate::{camera::Camera, geometry::unit};
@@ -72,6 +73,17 @@ pub enum LightError {
     TooDark,
     #[error("the floor beside the robot's body has no common colour")]
     Mixed,
+}
+
+impl From<LightError> for Reason {
+    fn from(error: LightError) -> Self {
+        match error {
+            LightError::Unseen => Self::NoFloor,
+            LightError::BurntOut => Self::Overexposed,
+            LightError::TooDark => Self::TooDark,
+            LightError::Mixed => Self::MixedFloor,
+        }
+    }
 }
 
 /// The colour of the floor in a ring of samples.

@@ -1,7 +1,7 @@
 //! The learned classifier.
 
 use super::{
-    ColourTable, Gain, PixelClass,
+    ColourTable, Gain, LightError, PixelClass,
     hsv::{BINS, Bin, Lattice, PLANE, VALUES},
     light,
     table::{self, CELLS},
@@ -60,10 +60,12 @@ pub struct ColourModel {
 
 impl ColourModel {
     /// The gain that brings an image to the light of this model. `ring` has the colours of its
-    /// [`FloorRing`](super::FloorRing). `None` if they are too dark, overexposed, or without a common
-    /// colour.
-    pub fn gain(&self, ring: &[[u8; 3]]) -> Option<Gain> {
-        light::floor_colour(ring).ok().map(|floor| light::gain(floor, self.floor))
+    /// [`FloorRing`](super::FloorRing).
+    ///
+    /// # Errors
+    /// Returns an error if they are too dark, overexposed, or without a common colour.
+    pub fn gain(&self, ring: &[[u8; 3]]) -> Result<Gain, LightError> {
+        light::floor_colour(ring).map(|floor| light::gain(floor, self.floor))
     }
 
     pub fn table(&self) -> ColourTable {
