@@ -164,4 +164,6 @@ pub enum TruncationKind {
     Continued { bytes: u64 },
     #[error("its index lists {listed} chunks, and it has {found}: some are missing")]
     ChunksMissing { listed: usize, found: usize },
+    #[error("its header counts {} pages, and it has {}: some are missing", grouped((*counted).into()), grouped((*found).into()))]
+    PagesMissing { counted: u64, found: u64 },
 }

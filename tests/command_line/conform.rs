@@ -194,6 +194,48 @@ fn a_divergence_in_a_database_names_its_row() {
     assert!(scratch.text("page.html").contains(&place));
 }
 
+/// *Database File Format* of SQLite, section 1.3: the size of a page, and the number of pages.
+#[cfg(feature = "sqlite")]
+#[test]
+fn a_database_whose_header_counts_other_pages_is_truncated() {
+    let scratch = logged("conform-pages");
+    rewritten(&scratch.path("run.mcap"), &scratch.path("run.db3"), |_, _| true);
+    let whole = scratch.bytes("run.db3");
+    let page = usize::from(u16::from_be_bytes([whole[16], whole[17]]));
+    let pages = whole.len() / page;
+    assert_eq!(whole[28..32], u32::try_from(pages).unwrap().to_be_bytes());
+    let messages = scratch.last("info run.db3 --verify", 0)["messages"].as_u64().unwrap();
+    let verdict = |log: &str, code| judged(&scratch, &format!("conform {log}"), code);
+    assert_eq!(verdict("run.db3", 0)["verdict"], "conforms");
+    let counts = format!("its header counts {pages} pages, and it has");
+    for (bytes, cause, expected) in [
+        (
+            [&whole[..], b"another log"].concat(),
+            "11 more bytes follow".to_owned(),
+            messages..=messages,
+        ),
+        // The last page may have none of the messages.
+        (whole[..whole.len() - 1].to_vec(), format!("{counts} {}", pages - 1), 1..=messages),
+        (whole[..whole.len() / 2 / page * page].to_vec(), counts, 1..=messages - 1),
+    ] {
+        scratch.write("other.db3", &bytes);
+        for options in ["", " --verify"] {
+            let line = scratch.last(&format!("info other.db3{options}"), 3);
+            let truncated = line["truncated"]["cause"].as_str().unwrap();
+            assert!(truncated.contains(&cause), "{truncated}");
+            let read = line["messages"].as_u64().unwrap();
+            assert!(expected.contains(&read), "{read} of {messages}");
+        }
+        let line = verdict("other.db3", 3);
+        assert_eq!(line["verdict"], "not-known");
+        assert!(line["truncated"]["cause"].as_str().unwrap().contains(&cause), "{line}");
+    }
+    // What is missing may be in the log of a transaction that did not end.
+    scratch.write("other.db3", &whole[..whole.len() - page]);
+    scratch.write("other.db3-wal", "frames");
+    scratch.out("info other.db3", 2);
+}
+
 /// One log is checked, and the next one is being read.
 #[cfg(unix)]
 #[test]

@@ -4,19 +4,26 @@
 //! A section is a range of rows.
 
 use std::{
+    cmp::Ordering,
     collections::BTreeMap,
+    ffi::OsString,
+    fs,
     ops::Range,
     path::Path,
     sync::{Mutex, PoisonError},
 };
 
-use rusqlite::{Connection, OpenFlags, limits::Limit};
+use rusqlite::{Connection, OpenFlags, limits::Limit, types::ValueRef};
 
 use super::{
     super::{Failure, FileStructure, Listener, Section},
     HEAD, Record,
 };
-use crate::{error::LogErrorKind, messages::published_schema, source::Source};
+use crate::{
+    error::{LogErrorKind, TruncationKind},
+    messages::published_schema,
+    source::Source,
+};
 
 /// The largest size of a section, in bytes, unless it is one row.
 const SECTION: u64 = 1 << 20;
@@ -26,6 +33,7 @@ pub(crate) struct Database {
     connection: Mutex<Connection>,
     topics: BTreeMap<i64, u32>,
     list: Vec<StoredTopic>,
+    truncation: Option<TruncationKind>,
 }
 
 struct StoredTopic {
@@ -56,6 +64,11 @@ impl Database {
         };
         connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, MOST_BYTES)?;
         connection.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;")?;
+        let truncation = truncation(source, path)?;
+        if matches!(truncation, Some(TruncationKind::PagesMissing { .. })) {
+            // Without this, SQLite refuses a file with fewer pages than its header counts.
+            connection.execute_batch("PRAGMA writable_schema = ON;")?;
+        }
         for table in ["topics", "messages"] {
             if !has_table(&connection, table)? {
                 return Err(LogErrorKind::Database(format!("it has no table `{table}`")));
@@ -64,7 +77,7 @@ impl Database {
         let list = topics(&connection)?;
         let topics = list.iter().zip(0..).map(|((id, _), index)| (*id, index)).collect();
         let list = list.into_iter().map(|(_, topic)| topic).collect();
-        Ok(Self { connection: Mutex::new(connection), topics, list })
+        Ok(Self { connection: Mutex::new(connection), topics, list, truncation })
     }
 
     pub(in super::super) fn scan(
@@ -83,24 +96,42 @@ impl Database {
         }
         let mut scan = FileStructure::default();
         let mut last = 0;
-        self.rows(&mut scan, &mut last).map_err(|cause| (cause, last))?;
-        scan.end_loose();
-        Ok(scan)
+        let is_read = self.rows(&mut scan, &mut last);
+        match (is_read, &self.truncation) {
+            (Ok(()), None) => {
+                scan.end_loose();
+                Ok(scan)
+            }
+            (Ok(()), Some(cause)) => Ok(scan.truncated(last, cause.clone())),
+            (Err(LogErrorKind::Database(_)), Some(cause)) if self.lacks_pages() => {
+                Ok(scan.truncated(last, cause.clone()))
+            }
+            (Err(cause), _) => Err((cause, last)),
+        }
+    }
+
+    fn lacks_pages(&self) -> bool {
+        matches!(self.truncation, Some(TruncationKind::PagesMissing { .. }))
     }
 
     /// Adds all rows to the sections; `last` becomes the number of the last row.
     fn rows(&self, scan: &mut FileStructure, last: &mut u64) -> Result<(), LogErrorKind> {
         let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut statement = connection
-            .prepare("SELECT id, topic_id, timestamp, length(data) FROM messages ORDER BY id")?;
+        // The length of a message is known without reading it, but not whether its pages are missing.
+        let data = if self.truncation.is_some() { "data" } else { "length(data)" };
+        let select = format!("SELECT id, topic_id, timestamp, {data} FROM messages ORDER BY id");
+        let mut statement = connection.prepare(&select)?;
         let mut rows = statement.query(())?;
         while let Some(row) = rows.next()? {
             let id = row_number(row.get(0)?)?;
             *last = id;
             let topic = self.topic(row.get(1)?)?;
             let time = time(row.get(2)?)?;
-            let length: Option<i64> = row.get(3)?;
-            let size = HEAD as u64 + u64::try_from(length.unwrap_or_default()).unwrap_or_default();
+            let length = match row.get_ref(3)? {
+                ValueRef::Integer(length) => u64::try_from(length).unwrap_or_default(),
+                data => message(data)?.len() as u64,
+            };
+            let size = HEAD as u64 + length;
             if scan.loose.as_ref().is_some_and(|section| section.size + size > SECTION) {
                 scan.end_loose();
             }
@@ -120,12 +151,18 @@ impl Database {
         let [start, end] = [range.start, range.end].map(|id| i64::try_from(id).unwrap_or(i64::MAX));
         let mut rows = statement.query((start, end))?;
         let mut bytes = Vec::new();
-        while let Some(row) = rows.next()? {
+        loop {
+            let row = match rows.next() {
+                Ok(Some(row)) => row,
+                // All rows of a section were read before; the page of the next one may be missing.
+                Err(_) if self.lacks_pages() => break,
+                Ok(None) => break,
+                Err(error) => return Err(error.into()),
+            };
             let id = row_number(row.get(0)?)?;
             let topic = self.topic(row.get(1)?)?;
             let time = time(row.get(2)?)?;
-            let data = row.get_ref(3)?.as_bytes_or_null().map_err(rusqlite::Error::from)?;
-            let data = data.unwrap_or_default();
+            let data = message(row.get_ref(3)?)?;
             bytes.extend([id, time].map(u64::to_le_bytes).as_flattened());
             bytes.extend([topic, data.len() as u32].map(u32::to_le_bytes).as_flattened());
             bytes.extend(data);
@@ -137,6 +174,51 @@ impl Database {
         let unknown = || LogErrorKind::UnknownConnection(u32::try_from(id).unwrap_or(u32::MAX));
         self.topics.get(&id).copied().ok_or_else(unknown)
     }
+}
+
+/// How a file differs from the pages that its header counts: section 1.3 of *Database File Format*
+/// (sqlite.org/fileformat.html). `None` if it does not, or if that is not known: an old SQLite counted no pages, or a
+/// file beside it has a transaction that did not end.
+fn truncation(
+    source: &Source,
+    path: Option<&Path>,
+) -> Result<Option<TruncationKind>, LogErrorKind> {
+    let length = source.length();
+    let head = source.read(0..length.min(100))?;
+    let number = |at: usize| head.get(at..at + 4).map(|bytes| bytes.iter().fold(0, big_endian));
+    let page = head.get(16..18).map(|bytes| bytes.iter().fold(0, big_endian));
+    let (Some(page @ 1..), Some(counted @ 1..), true) =
+        (page, number(28), number(24) == number(92))
+    else {
+        return Ok(None);
+    };
+    // A page of 65,536 bytes is written as 1.
+    let page = if page == 1 { 1 << 16 } else { page };
+    let whole = counted * page;
+    Ok(match length.cmp(&whole) {
+        Ordering::Equal => None,
+        _ if path.is_some_and(has_transaction) => None,
+        Ordering::Greater => Some(TruncationKind::Continued { bytes: length - whole }),
+        Ordering::Less => Some(TruncationKind::PagesMissing { counted, found: length / page }),
+    })
+}
+
+fn big_endian(number: u64, byte: &u8) -> u64 {
+    number << 8 | u64::from(*byte)
+}
+
+/// Whether a journal or a write-ahead log lies beside a database.
+fn has_transaction(path: &Path) -> bool {
+    ["-journal", "-wal"].into_iter().any(|ending| {
+        let mut beside = OsString::from(path);
+        beside.push(ending);
+        fs::metadata(beside).is_ok_and(|file| file.len() > 0)
+    })
+}
+
+/// The bytes of a message; none if there is none.
+fn message(data: ValueRef<'_>) -> Result<&[u8], LogErrorKind> {
+    Ok(data.as_bytes_or_null().map_err(rusqlite::Error::from)?.unwrap_or_default())
 }
 
 fn row_number(id: i64) -> Result<u64, LogErrorKind> {
