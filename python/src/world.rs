@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use pyo3::{prelude::*, types::PyBytes};
-use toposlam_draw::picture::{Placement, WorldPicture, png, svg};
+use toposlam_draw::picture::{Placement, WorldPicture, png, side_by_side, svg};
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, GraphError},
     format::{
@@ -238,6 +238,12 @@ impl CoreWorld {
         let picture =
             WorldPicture { title, caption, marker: kind, placement, ..WorldPicture::from(&self.0) };
         guarded(py, || Ok(py.detach(|| svg(&picture))))
+    }
+
+    /// Several SVG documents in one.
+    #[staticmethod]
+    fn side_by_side(documents: Vec<String>) -> String {
+        side_by_side(&documents)
     }
 
     /// An SVG document as a PNG image.

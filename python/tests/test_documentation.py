@@ -18,6 +18,8 @@ MODULES = [f"toposlam.{info.name}" for info in pkgutil.iter_modules(toposlam.__p
 
 @pytest.mark.parametrize("name", ["toposlam", *MODULES])
 def test_examples_of_docstrings(name):
+    if name == "toposlam.gym":
+        pytest.importorskip("gymnasium")
     assert doctest.testmod(importlib.import_module(name)).failed == 0
 
 
@@ -25,6 +27,7 @@ def test_examples_of_the_page():
     """The `python` blocks of docs/python.md run in order; the output of its `pycon` blocks is compared."""
     page = "python.md"
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    pytest.importorskip("gymnasium")
     blocks = re.findall(r"^```(python|pycon)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
     assert blocks
     names = {"__name__": "page"}
@@ -38,6 +41,18 @@ def test_examples_of_the_page():
             test.globs = names
             runner.run(test, clear_globs=False)
     assert runner.summarize().failed == 0
+
+
+def test_the_page_lists_all_names_and_markers():
+    text = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    names, markers = (
+        re.findall(
+            r"^\| `([^`]+)` \|", text[text.index(f"\n## {section}\n") :].split("\n## ")[1], re.MULTILINE
+        )
+        for section in ("All names", "Markers")
+    )
+    assert sorted(names) == sorted(toposlam.__all__)
+    assert tuple(name.strip('"') for name in markers) == toposlam.MARKERS
 
 
 def run(*arguments, folder=ROOT / "python"):
@@ -69,7 +84,7 @@ def test_optional_libraries_are_imported_only_when_used():
     code = (
         "import sys, toposlam as ts; "
         "ts.explore(ts.World({1: [2], 2: [1]})); ts.check(lambda robot: None, edges=1, progress=False); "
-        "optional = {'matplotlib', 'networkx', 'numpy', 'pandas', 'tqdm'}; "
+        "optional = {'gymnasium', 'matplotlib', 'networkx', 'numpy', 'pandas', 'tqdm'}; "
         "print(optional & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)

@@ -230,7 +230,8 @@ class CheckReport:
             text += f", {mean:.2f} moves on average, at most {self.most_moves}"
         if self.vs_certificate is not None:
             text += f", {self.vs_certificate:.2f} times the certificate"
-        return f"<CheckReport {self.verdict}: {self.explorer}, {self.cls}, edges {edges}: {text}>"
+        cls = self.cls or "given worlds"
+        return f"<CheckReport {self.verdict}: {self.explorer}, {cls}, edges {edges}: {text}>"
 
 
 @dataclass(frozen=True)
@@ -289,7 +290,7 @@ def _question(
     return _Question(explorer, wanted, cls, marker, max_moves, seconds, max_failures)
 
 
-def _given(worlds: Iterable[World]) -> Iterator[tuple[int, World]]:
+def given_starts(worlds: Iterable[World]) -> Iterator[tuple[int, World]]:
     """Each start of the worlds, with its number; of a world without a start, all of them."""
     try:
         listed = iter(worlds)
@@ -441,7 +442,7 @@ def check(
     edges = range(1, 6) if edges is None else edges
     question = _question(explorer, edges, cls, marker, max_moves, seconds, max_failures)
     if worlds is not None:
-        question = replace(question, given=_given(worlds))
+        question = replace(question, given=given_starts(worlds))
     check_limit("processes", processes)
     if stop_after is not None:
         check_limit("stop_after", stop_after)

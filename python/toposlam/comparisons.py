@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, Union
@@ -126,7 +125,8 @@ class WorldPair:
     def draw(self) -> Picture:
         """Both worlds, side by side."""
         kind = drawn(self.marker)
-        return side_by_side([world.draw(marker=kind).svg for world in (self.one, self.other)])
+        pictures = [world.draw(marker=kind).svg for world in (self.one, self.other)]
+        return Picture(_core.World.side_by_side(pictures))
 
     def _repr_svg_(self) -> str:
         return self.draw().svg
@@ -218,16 +218,3 @@ def counterexample(
             worlds.append(World._of(core.with_start(core.start, f"{name}-{number}", core.about)))
         named.append(tuple(worlds))
     return Counterexamples(marker, cls, tuple(SearchedSize(*size) for size in sizes), tuple(named))
-
-
-def side_by_side(documents: list[str]) -> Picture:
-    """Several SVG documents in one, side by side."""
-    left, height, parts = 0.0, 0.0, []
-    for document in documents:
-        size = re.search(r'viewBox="([-\d. ]+)"', document)
-        width, tall = (float(part) for part in size[1].split()[2:]) if size else (400.0, 400.0)
-        inner = document[document.index("<svg") :].rstrip()
-        parts.append(f'<g transform="translate({left:g} 0)">{inner}</g>')
-        left, height = left + width, max(height, tall)
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left:g} {height:g}" '
-    return Picture(f'{head}width="{left:g}" height="{height:g}">{"".join(parts)}</svg>\n')

@@ -56,5 +56,6 @@ def plot_costs(*reports: CheckReport, axes: Any = None) -> Any:
         means = [size.certificate / size.mapped for size in sizes]
         axes.plot([size.edges for size in sizes], means, "k--", label="certificate")
     axes.set(xlabel="edges", ylabel="mean moves")
+    axes.xaxis.get_major_locator().set_params(integer=True)
     axes.legend()
     return axes
