@@ -9,6 +9,7 @@ mod command_line;
 mod conform_page;
 mod docs;
 mod fuzz;
+mod game;
 mod oracle;
 mod output;
 mod pages;

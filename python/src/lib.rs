@@ -11,6 +11,7 @@ mod log;
 mod long_work;
 mod own_marker;
 mod percept;
+mod play;
 mod robot;
 mod starts;
 mod trail;
@@ -35,6 +36,8 @@ mod _core {
     use super::log::{LogReader, log_picture};
     #[pymodule_export]
     use super::percept::Percept;
+    #[pymodule_export]
+    use super::play::{random_page, world_page};
     #[pymodule_export]
     use super::robot::Robot;
     #[pymodule_export]

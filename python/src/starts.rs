@@ -126,8 +126,12 @@ impl Start {
     }
 }
 
+pub(crate) fn named_class(py: Python<'_>, name: &str) -> PyResult<Class> {
+    name.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))
+}
+
 fn enumeration(py: Python<'_>, each: &str, class: &str, edges: usize) -> PyResult<Enumeration> {
-    let class: Class = class.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
+    let class = named_class(py, class)?;
     let each = if each == "world" { Each::World } else { Each::Start };
     Enumeration::new(each, class, edges).map_err(|cause| error(py, "SizeError", cause))
 }

@@ -31,6 +31,7 @@ from .enumeration import CLASSES, count_starts, count_worlds, random_world, star
 from .errors import ExplorerError, ToposlamError, WorldError
 from .logs import ConformReport, Divergence, Log, LogEvent, Table, conform, read_log
 from .markers import MARKERS, OwnPercept
+from .play import Page, play
 from .plots import plot_costs, plot_visits, plot_way
 from .runs import Run, explore
 from .trails import Trail
@@ -50,6 +51,7 @@ __all__ = [
     "Log",
     "LogEvent",
     "OwnPercept",
+    "Page",
     "Percept",
     "Picture",
     "Robot",
@@ -73,6 +75,7 @@ __all__ = [
     "errors",
     "explore",
     "merge",
+    "play",
     "plot_costs",
     "plot_visits",
     "plot_way",

@@ -2,33 +2,33 @@
 
 use std::{
     io::Write,
-    ops::ControlFlow,
     path::{Path, PathBuf},
 };
 
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
-    embedded_graph::Dart,
-    enumerate::{Class, Each, Enumeration},
+    enumerate::Class,
     format::named_world::NamedWorld,
+    marker::{self, Marker},
 };
 
 use super::{
     CliError, Outcome,
     exit_codes::help_end,
     input, output,
-    progress::{Progress, must_stop},
-    text::{counted, vertices},
+    progress::{Progress, StopSignal},
+    text::vertices,
 };
-use crate::page::play_page;
+use crate::page::{MOST_VERTICES, NoGame, games_of, play_page, random_games};
 
 /// Write a page on which you are the robot: map a world from its percepts
 ///
 /// The page shows how many doors a place has, which one you came in by, and the marker. You choose doors, and
-/// claim that a place is one you know. At the end your map is judged, and your moves are compared with those
-/// of Algorithm 1, of the folding explorer, and of the certificate: no robot needs fewer. The page is one file
-/// and needs no network.
+/// claim that a place is one you know. At the end your map is judged. If it is right but your walk does not prove
+/// it, the page draws the smallest other world that explains your walk. Your moves are compared with those of the
+/// algorithms that map with the marker, and, with a directional one, of the certificate: no robot needs fewer.
+///
+/// The page is one file and needs no network. It has further worlds to map: the world with other starts, or more
+/// random ones.
 #[derive(clap::Args)]
 #[command(
     arg_required_else_help = true,
@@ -36,6 +36,7 @@ use crate::page::play_page;
         "\
 Examples:
   toposlam play worlds/shape-6.toml --out play.html
+  toposlam play worlds/figure-1a.toml --marker undirected --out play.html
   toposlam play --edges 5 --seed 7 --out play.html",
         &[(0, "the page is written"), (2, "bad usage or input"), (3, "interrupted")],
     )
@@ -43,6 +44,10 @@ Examples:
 pub(super) struct PlayArguments {
     /// The world file [default: a start at random, each of a class and a number of edges equally likely]
     world: Option<PathBuf>,
+    /// The marker: none, undirected, directional, undirected-edge, directed-edge, two-identical, two-distinct or
+    /// movable
+    #[arg(long, default_value = "directional", value_name = "KIND", value_parser = marker::named)]
+    marker: &'static dyn Marker,
     /// Number of edges of a random world, from 1 to 8
     #[arg(
         long,
@@ -66,17 +71,14 @@ pub(super) struct PlayArguments {
     out: Option<PathBuf>,
 }
 
-/// The most vertices of a world on a page.
-const MOST_VERTICES: usize = 100;
-
 impl PlayArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         output::check_place(&self.out, &["html", "htm"])?;
-        let (world, facing) = match &self.world {
+        let games = match &self.world {
             Some(path) => self.read(path)?,
-            None => (self.draw_world()?, Dart(0)),
+            None => self.random()?,
         };
-        let page = play_page(&world, facing);
+        let page = play_page(&games, self.marker);
         match &self.out {
             Some(path) => output::write_whole(path, page.as_bytes())?,
             None => out.write_all(page.as_bytes())?,
@@ -84,8 +86,8 @@ impl PlayArguments {
         Ok(Outcome::Holds)
     }
 
-    /// The world of the file, and the start.
-    fn read(&self, path: &Path) -> Result<(NamedWorld, Dart), CliError> {
+    /// The world of the file, from its start and from others.
+    fn read(&self, path: &Path) -> Result<Vec<NamedWorld>, CliError> {
         let world = input::read_world(path)?;
         let count = world.graph.vertex_count();
         if count > MOST_VERTICES {
@@ -94,45 +96,16 @@ impl PlayArguments {
             return Err(CliError::in_file(path, cause));
         }
         let facing = input::start_of(&world, self.start.as_deref())?;
-        Ok((world, facing))
+        Ok(games_of(&world, facing))
     }
 
-    /// A world at random. Its start is dart 0.
-    fn draw_world(&self) -> Result<NamedWorld, CliError> {
-        let edges = usize::from(self.edges);
-        let starts = Enumeration::new(Each::Start, self.class, edges)
-            .map_err(|error| CliError::at("--edges", error))?;
-        let progress = Progress::endless("random world", "starts")?;
-        // It takes seconds to visit many starts.
-        let stops = |visited: u64| visited.is_multiple_of(1 << 16) && must_stop();
-        let mut count = 0;
-        let counted_all = starts.for_each(&mut |_| {
-            count += 1;
-            if stops(count) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
-        if counted_all.is_break() {
-            return Err(CliError::Interrupted);
-        }
-        if count == 0 {
-            let cause =
-                format!("class {} has no world with {}", self.class, counted(edges, "edge"));
-            return Err(CliError::at("--edges", cause));
-        }
-        let mut left = Xoshiro256PlusPlus::seed_from_u64(self.seed).random_range(0..count);
-        let mut chosen = None;
-        let _ = starts.for_each(&mut |found| {
-            if left == 0 {
-                chosen = Some(found.graph.clone());
-            }
-            if left == 0 || stops(left) {
-                return ControlFlow::Break(());
-            }
-            left -= 1;
-            ControlFlow::Continue(())
-        });
+    fn random(&self) -> Result<Vec<NamedWorld>, CliError> {
+        let progress = Progress::endless("random worlds", "starts")?;
+        let games = random_games(self.class, self.edges.into(), self.seed, &StopSignal);
         progress.finish();
-        let graph = chosen.ok_or(CliError::Interrupted)?;
-        let name = format!("{}-{}-{}", self.class, self.edges, self.seed);
-        Ok(NamedWorld::numbered(&name, "", graph, Some(Dart(0))))
+        games.map_err(|none| match none {
+            NoGame::Interrupted => CliError::Interrupted,
+            none => CliError::at("--edges", none),
+        })
     }
 }

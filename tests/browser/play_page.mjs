@@ -1,19 +1,21 @@
 // Tests the game in a headless Chromium. If a test fails, the exit code is 1 and there is one message.
 //
-//   node play_page.mjs CHROMIUM right=FILE loops=FILE ...
+//   node play_page.mjs CHROMIUM right=FILE loops=FILE guessed=FILE ...
 //
-// right: a game that takes the doors of the folding explorer and makes only true claims, and wins; loops: the
-// world is an edge from the marker to a place with two loops, each between two neighbouring doors.
+// right: a game with a directional marker that takes the doors of the folding explorer and makes only true claims, and
+// wins; loops: the world is an edge from the marker to a place with two loops, each between two neighbouring doors;
+// guessed: figure 1(a) with an undirected marker, which no walk proves; proved: a world in which a walk through every door
+// proves the map with the marker of the page; movable: the walk of the movable marker algorithm.
 
 import assert from "node:assert/strict";
-import { DESK, LAPTOP, READER, assertFitsPhone, assertNamesReadable, photograph, visitAll } from "./visits.mjs";
+import { DESK, LAPTOP, READER, assertFitsPhone, assertNamesReadable, photograph, seeded, visitAll } from "./visits.mjs";
 
 /** What the page shows now. */
 function shown(page) {
   return page.evaluate(() => {
     const text = (selector) => document.querySelector(selector).textContent;
     return {
-      percept: text(".percept"),
+      percept: text(".play .percept"),
       moves: text(".moves"),
       size: text(".map .size"),
       status: text(".status"),
@@ -21,15 +23,18 @@ function shown(page) {
       buttons: [...document.querySelectorAll(".doors button")].map((button) => button.textContent),
       rows: [...document.querySelectorAll(".percepts tbody tr")].map((row) => row.textContent),
       list: [...document.querySelectorAll(".listed li")].map((item) => item.textContent),
-      names: [...document.querySelectorAll(".drawing .name")].map((name) => name.textContent),
+      names: [...document.querySelectorAll(".play .drawing .name")].map((name) => name.textContent),
       heading: text("#result-heading"),
       result: !document.querySelector(".result").hidden,
       worlds: document.querySelectorAll(".solution svg").length,
+      claims: [...document.querySelectorAll(".claims li")].map((item) => item.firstChild.textContent),
     };
   });
 }
 
-const readData = (page) => page.evaluate(() => JSON.parse(document.querySelector("#data").textContent));
+/** The games of the page. */
+const readGames = async (page) =>
+  (await page.evaluate(() => JSON.parse(document.querySelector("#data").textContent))).games;
 
 /** The true robot, and the names that the page gives to the places it discovers. */
 class TrueRobot {
@@ -42,12 +47,12 @@ class TrueRobot {
     this.pose = this.world[v][(i + door) % this.world[v].length];
   }
 
+  /** With a directional marker. */
   percept() {
     const [v, i] = this.pose;
     const degree = this.world[v].length;
     const doors = degree === 1 ? "1 door" : `${degree} doors`;
-    if (v !== this.start[0]) return `${doors}, no marker`;
-    return `${doors}, the marker, along door ${(this.start[1] - i + degree) % degree}`;
+    return v === this.start[0] ? `${doors}, marker along door ${(this.start[1] - i + degree) % degree}` : doors;
   }
 
   /** The name of the place and the number of the door behind the robot; null if the place is new. */
@@ -67,6 +72,24 @@ async function go(page, door, way) {
   if (way === 0) await page.locator(`.here .door[data-door="${door}"] .badge`).click();
   else if (way === 1) await page.locator(".doors button").nth(door).click();
   else await page.keyboard.press(String(door));
+}
+
+/** If the place is a known one and the map does not show it, claims it. Returns whether it did. */
+async function claimIfKnown(page, robot) {
+  const known = robot.known();
+  const { status, list } = await shown(page);
+  if (known === null) {
+    assert.match(status, /On your map, this is a new place\.$/);
+    return false;
+  }
+  if (status.endsWith(`On your map, this is ${known.name}.`)) {
+    assert.ok(list.some((item) => item.startsWith(`${known.name} (you are here)`)));
+    return false;
+  }
+  assert.match(status, /(new place|so claim it)\.$/);
+  await claim(page, known);
+  assert.equal((await shown(page)).status, `This place is ${known.name}, and you came in by its door ${known.index}.`);
+  return true;
 }
 
 async function claim(page, { name, index }) {
@@ -96,7 +119,7 @@ async function assertTouchable(page) {
 /** The whole map is in its panel, and no hallway passes a place, so that its doors seem to be followed. */
 async function assertClear(page) {
   const faults = await page.evaluate(() => {
-    const svg = document.querySelector(".drawing");
+    const svg = document.querySelector(".play .drawing");
     const panel = svg.getBoundingClientRect();
     const discs = [...svg.querySelectorAll(".disc")].map((disc) => {
       const { left, right, top, bottom } = disc.getBoundingClientRect();
@@ -120,8 +143,8 @@ async function assertClear(page) {
 
 /** The map is enlarged around the robot, moved with the pointer, and fits again. */
 async function enlargeAndFit(page) {
-  const width = () => page.evaluate(() => document.querySelector(".drawing .disc.here").getBoundingClientRect().width);
-  const box = () => page.locator(".drawing").getAttribute("viewBox");
+  const width = () => page.evaluate(() => document.querySelector(".play .drawing .disc.here").getBoundingClientRect().width);
+  const box = () => page.locator(".play .drawing").getAttribute("viewBox");
   // The size of the window has just changed.
   await page.waitForTimeout(100);
   const [fitting, small] = [await box(), await width()];
@@ -129,7 +152,7 @@ async function enlargeAndFit(page) {
   await page.keyboard.press("+");
   assert.ok((await width()) > 1.3 * small, "a larger map has larger places");
   const before = await box();
-  const { x, y } = await page.locator(".drawing").boundingBox();
+  const { x, y } = await page.locator(".play .drawing").boundingBox();
   await page.mouse.move(x + 60, y + 60);
   await page.mouse.down();
   await page.mouse.move(x + 100, y + 80);
@@ -160,32 +183,21 @@ async function atHalf(page, file) {
 }
 
 async function win(page, file) {
-  const data = await readData(page);
-  const robot = new TrueRobot(data);
-  assert.deepEqual(data.walks.map(({ name }) => name), ["Certificate", "Folding explorer", "Algorithm 1"]);
-  const [certificate, folding, algorithm1] = data.walks.map(({ doors }) => doors);
+  const [game] = await readGames(page);
+  const robot = new TrueRobot(game);
+  assert.deepEqual(game.walks.map(({ name }) => name), ["Certificate", "Folding explorer", "Algorithm 1"]);
+  const [certificate, folding, algorithm1] = game.walks.map(({ actions }) => actions.map(Number));
   let claims = 0;
   for (const [step, door] of folding.entries()) {
     await go(page, door, door < 10 ? step % 3 : 1);
     robot.go(door);
-    let now = await shown(page);
+    const now = await shown(page);
     assert.equal(now.percept, robot.percept());
     assert.equal(now.moves, step === 0 ? "1 move" : `${step + 1} moves`);
     assert.equal(now.rows.length, step + 2);
     assert.equal(now.doors.length, now.buttons.length);
     assert.equal(now.worlds, 0, "the world is shown before the end");
-    const known = robot.known();
-    if (known === null) {
-      assert.match(now.status, /On your map, this is a new place\.$/);
-    } else if (now.status.endsWith(`On your map, this is ${known.name}.`)) {
-      assert.ok(now.list.some((item) => item.startsWith(`${known.name} (you are here)`)));
-    } else {
-      assert.match(now.status, /(new place|so claim it)\.$/);
-      await claim(page, known);
-      claims += 1;
-      now = await shown(page);
-      assert.equal(now.status, `This place is ${known.name}, and you came in by its door ${known.index}.`);
-    }
+    if (await claimIfKnown(page, robot)) claims += 1;
     await assertClear(page);
     if (step === Math.floor(folding.length / 2)) {
       await atHalf(page, file);
@@ -196,8 +208,8 @@ async function win(page, file) {
     }
   }
   const before = await shown(page);
-  assert.match(before.size, /no open door$/);
-  assert.equal(before.names.length, data.world.length);
+  assert.match(before.size, /no open doors$/);
+  assert.equal(before.names.length, game.world.length);
   assert.equal(before.result, false);
   await page.getByRole("button", { name: "My map is complete" }).click();
   const now = await shown(page);
@@ -211,6 +223,86 @@ async function win(page, file) {
     ["Algorithm 1", String(algorithm1.length), ratio(algorithm1)],
   ]);
   return { moves: folding.length, claims };
+}
+
+/** Walks at random for so many moves an edge, and claims what is true. Returns the number of moves. */
+async function walkAtRandom(page, { world, start }, movesPerEdge) {
+  const robot = new TrueRobot({ world, start });
+  const random = seeded(2);
+  const moves = (movesPerEdge * world.flat().length) / 2;
+  for (let move = 0; move < moves; move += 1) {
+    const door = random(world[robot.pose[0]].length);
+    await page.keyboard.press(String(door));
+    robot.go(door);
+    await claimIfKnown(page, robot);
+  }
+  return moves;
+}
+
+/** Another world looks the same on the walk, and the page draws it. */
+async function guess(page, file) {
+  const [game, next] = await readGames(page);
+  const moves = await walkAtRandom(page, game, 8);
+  await page.keyboard.press("f");
+  assert.equal((await shown(page)).heading, "Right, but guessed");
+  assert.match(await page.locator(".reason").textContent(), /perceives what you perceived, and your map would be wrong\.$/);
+  assert.equal(await page.locator(".other .kind").textContent(), "The smallest other world");
+  assert.equal(await page.locator(".other .size").textContent(), "5 places, 8 edges");
+  assert.equal(await page.locator(".other .disc").count(), 5);
+  assert.equal(await page.locator(".other .disc.here").count(), 1);
+  // No algorithm maps with this marker.
+  assert.deepEqual(await page.locator(".comparison tbody tr").allTextContents(), [`You${moves}${await page.locator(".comparison .faint").textContent()}`]);
+  assert.equal(await page.locator(".comparison .ratio").isVisible(), false);
+  await photograph(page, file, "guessed");
+  await assertNamesReadable(page, [".other .name", ".other .index"]);
+  // Another start of the same world: the marker is on the rim of the wheel, where a walk shows which wheel it is.
+  await page.getByRole("button", { name: "Another world" }).click();
+  const again = await shown(page);
+  assert.match(again.status, /^World 2 of \d+\. You begin: /);
+  assert.deepEqual([again.result, again.moves, again.doors.length], [false, "0 moves", next.world[next.start[0]].length]);
+  await walkAtRandom(page, next, 8);
+  await page.keyboard.press("f");
+  assert.equal((await shown(page)).heading, "Right, and proved");
+  return { moves };
+}
+
+/** A walk through every door proves the map. */
+async function prove(page) {
+  const [game] = await readGames(page);
+  const moves = await walkAtRandom(page, game, 8);
+  await page.keyboard.press("f");
+  assert.equal((await shown(page)).heading, "Right, and proved");
+  assert.equal(await page.locator(".other").isVisible(), false);
+  return { moves };
+}
+
+/** The movable marker is picked up and dropped by buttons and by keys, and the moves are compared with the algorithm's. */
+async function carry(page, file) {
+  const [game] = await readGames(page);
+  assert.deepEqual(game.walks.map(({ name }) => name), ["Place and back-link validation"]);
+  const [{ actions }] = game.walks;
+  const robot = new TrueRobot(game);
+  await press(page, ["d"]);
+  assert.equal((await shown(page)).status, "You do not carry the marker.");
+  for (const [step, action] of actions.entries()) {
+    if (/^\d+$/.test(action)) {
+      await go(page, Number(action), step % 2);
+      robot.go(Number(action));
+      await claimIfKnown(page, robot);
+    } else {
+      if (step % 2) await page.keyboard.press(action[0]);
+      else await page.getByRole("button", { name: action, exact: true }).click();
+      assert.match((await shown(page)).percept, action === "drop" ? /, marker$/ : /; you carry the marker$/);
+    }
+    assert.equal(await page.locator(".here .carrying").count(), (await shown(page)).percept.endsWith("carry the marker") ? 1 : 0);
+    if (step === actions.length >> 1) await photograph(page, file, "carrying");
+  }
+  await page.keyboard.press("f");
+  assert.match((await shown(page)).heading, /^Right, /);
+  const moves = String(actions.filter((action) => /^\d+$/.test(action)).length);
+  const rows = await page.evaluate(() => [...document.querySelectorAll(".comparison tbody tr")].map((row) => [...row.cells].slice(0, 2).map((cell) => cell.textContent)));
+  assert.deepEqual(rows, [["You", moves], ["Place and back-link validation", moves]]);
+  return { moves };
 }
 
 /** Answers the next question of the page. */
@@ -238,7 +330,7 @@ async function claimByKeys(page, index) {
 async function finishWith(page, [first, doors, second]) {
   await page.keyboard.press("r");
   await press(page, ["0", "1"]);
-  assert.match((await shown(page)).status, /5 doors, no marker\. On your map, this is a new place\.$/);
+  assert.match((await shown(page)).status, /5 doors\. On your map, this is a new place\.$/);
   await claimByKeys(page, first);
   await press(page, doors);
   await claimByKeys(page, second);
@@ -251,11 +343,14 @@ async function finishWith(page, [first, doors, second]) {
 async function playLoops(page, file) {
   const right = await finishWith(page, ["2", ["1"], "4"]);
   assert.deepEqual([right[0], right[2]], ["Right, but guessed", "3 moves"]);
-  assert.match(right[1], /another world looks the same on your walk/);
+  assert.match(right[1], /your map would be wrong\.$/);
+  // Of the four open doors of the place with five, two are known to be one hallway, and two others too: without the sight
+  // of the marker, the smallest other world has its loops elsewhere.
+  assert.equal(await page.locator(".other .size").textContent(), "2 places, 3 edges");
   await photograph(page, file, "guessed");
   const wrong = await finishWith(page, ["3", ["4"], "4"]);
   assert.equal(wrong[0], "Wrong map");
-  assert.match(wrong[1], /^Your map is not the world: its v1 is several places, or one that is turned\.$/);
+  assert.match(wrong[1], /^Your map is not the world: your v1 stands for several places of the world, or for one that is turned\.$/);
   assert.equal((await compared(page))[1][0], "You (wrong map)");
   // After the end nothing moves, and the page says so.
   await page.keyboard.press("0");
@@ -285,13 +380,13 @@ async function playLoops(page, file) {
   assert.match((await shown(page)).status, /There is no door 7 here/);
   await press(page, ["0", "1"]);
   await claim(page, { name: "v0", index: 0 });
-  assert.match((await shown(page)).status, /^This cannot be door 0 of v0: one place has/);
+  assert.equal((await shown(page)).status, "This cannot be door 0 of v0: v0 has 1 door, this place has 5.");
   await claim(page, { name: "v1", index: 1 });
   assert.match((await shown(page)).status, /^This cannot be door 1 of v1: a hallway would have only one end/);
   assert.match((await shown(page)).size, /^3 places/);
   // A wrong claim is found by a later percept: behind the door that it names is the marker.
   await page.evaluate(() => {
-    const dart = [...document.querySelectorAll(".drawing .reach")][1 + 2];
+    const dart = [...document.querySelectorAll(".play .drawing .reach")][1 + 2];
     dart.dispatchEvent(new MouseEvent("click", { bubbles: true }));
   });
   assert.match((await shown(page)).status, /^Claim that this place is v1, and that you came in by its door 2\?/);
@@ -304,15 +399,34 @@ async function playLoops(page, file) {
   assert.match((await shown(page)).status, /^A claim of yours is wrong/);
   await photograph(page, file, "contradiction");
   await press(page, ["w"]);
-  assert.match((await shown(page)).status, /^The last claim is withdrawn/);
+  assert.match((await shown(page)).status, /^Withdrawn: Move 2: v1, by its door 3\. /);
   await press(page, ["w"]);
   assert.equal((await shown(page)).status, "There is no claim to withdraw.");
+  // Any claim can be withdrawn.
+  answerNext(page, true);
+  await press(page, ["r", "0", "1"]);
+  await claim(page, { name: "v1", index: 2 });
+  await press(page, ["1"]);
+  await claim(page, { name: "v1", index: 4 });
+  assert.deepEqual((await shown(page)).claims, ["Move 2: v1, by its door 2", "Move 3: v1, by its door 4"]);
+  await page.locator(".claims button").first().click();
+  const left = await shown(page);
+  assert.match(left.status, /^Withdrawn: Move 2: v1, by its door 2\. /);
+  assert.equal(left.claims.length, 1);
+  // The marker is seen again, at a place that is not claimed: at each arrival the page asks for the claim.
+  answerNext(page, true);
+  await press(page, ["r", "0", "1", "3"]);
+  const prompt = /The marker lies here, and on your map it lies elsewhere: you know this place, so claim it\.$/;
+  assert.match((await shown(page)).status, prompt);
+  await press(page, ["0", "0"]);
+  assert.match((await shown(page)).status, prompt);
   return { walks: 3 };
 }
 
 async function visit(page, kind, file) {
   await photograph(page, file, "start");
-  const found = kind === "right" ? await win(page, file) : await playLoops(page, file);
+  const games = { right: win, loops: playLoops, guessed: guess, proved: prove, movable: carry };
+  const found = await games[kind](page, file);
   for (const [name, size] of [["desk", DESK], ["laptop", LAPTOP]]) {
     await page.setViewportSize(size);
     await page.evaluate(() => scrollTo(0, 0));
@@ -322,10 +436,10 @@ async function visit(page, kind, file) {
   await photograph(page, file, "dark");
   await page.emulateMedia({ colorScheme: "light" });
   await assertFitsPhone(page);
-  await assertNamesReadable(page, [".drawing .name", ".drawing .index", ".here .door text"]);
+  await assertNamesReadable(page, [".play .drawing .name", ".play .drawing .index", ".here .door text"]);
   await assertTouchable(page);
   await photograph(page, file, "phone");
   return found;
 }
 
-await visitAll(["right", "loops"], visit);
+await visitAll(["right", "loops", "guessed", "proved", "movable"], visit);

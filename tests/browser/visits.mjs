@@ -19,6 +19,15 @@ export const LAPTOP = { width: 1280, height: 800 };
 export const READER = { width: 390, height: 844 };
 const READABLE = 10;
 
+/** Numbers below `bound` that are the same in every run. */
+export function seeded(seed) {
+  let state = seed;
+  return (bound) => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return Math.floor((state / 2 ** 32) * bound);
+  };
+}
+
 /** Makes the window as small as a phone, and sees that there is nothing to scroll sideways. */
 export async function assertFitsPhone(page) {
   await page.setViewportSize(PHONE);

@@ -9,15 +9,6 @@ import { DESK, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
 
 const DOORS = 50;
 
-/** Numbers below `bound` that are the same in every run. */
-function seeded(seed) {
-  let state = seed;
-  return (bound) => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return Math.floor((state / 2 ** 32) * bound);
-  };
-}
-
 /** What the page shows now. */
 function shown(page) {
   return page.evaluate(() => {

@@ -7,6 +7,7 @@
 
 mod conform;
 mod explorer;
+mod graph_json;
 mod play;
 mod run;
 mod template;
@@ -14,7 +15,7 @@ mod walk;
 
 pub use conform::{ReportOrigin, conform_page};
 pub use explorer::explorer_page;
-pub use play::play_page;
+pub use play::{MOST_VERTICES, NoGame, games_of, play_page, random_games};
 pub use run::run_page;
 pub use walk::{MOST_PAIRS, WalkPage, page};
 
@@ -22,3 +23,6 @@ pub use walk::{MOST_PAIRS, WalkPage, page};
 const PAGE_STYLE: &str = include_str!("browser/page.css");
 /// The beginning of the scripts of all pages.
 const PAGE_SCRIPT: &str = include_str!("browser/page.js");
+/// Embedded graphs, and the kinds of markers, in the scripts of pages.
+const GRAPH_SCRIPT: &str = include_str!("browser/graph.js");
+const MARKER_SCRIPT: &str = include_str!("browser/marker.js");

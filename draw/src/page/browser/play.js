@@ -1,12 +1,19 @@
 // The game: the person takes doors and makes claims; the page shows the map that follows, and judges it.
 
 const data = JSON.parse(find("#data").textContent);
-const { world, start, walks } = data;
+const { marker } = data;
+const games = data.games.map(({ world, start, ...rest }, number) => {
+  const graph = Graph.of(world);
+  return { ...rest, number, graph, start: graph.dart(start), picture: document.querySelectorAll(".picture")[number] };
+});
 
-/** The walk so far: the robot's true pose, the percepts, the doors; and the claims about it. */
-let truth, percepts, doors, claims;
-/** The folded map, its places, and the contradiction of the last percept with the claims, if there is one. */
-let map, places, contradiction;
+/** The world to map, and the robot that is truly in it. */
+let [game] = games;
+let robot;
+/** The walk so far, and the claims about it: each that two poses are one. A pose is a number of actions and a turn. */
+let percepts, actions, claims;
+/** The folded map, and the contradiction of the last percept with the claims, if there is one. */
+let map, contradiction;
 /** The names of the places, by the least place of the trail; a place gets one when the robot leaves it. */
 let names;
 let finished = false;
@@ -15,30 +22,32 @@ const write = (selector, text) => {
   find(selector).textContent = text;
 };
 
-const here = new Here(find(".here"), go);
-const drawing = new MapDrawing(find(".drawing"), choose);
+const here = new Here(find(".here"), act);
+const drawing = new MapDrawing(find(".play .drawing"), choose);
+const otherDrawing = new MapDrawing(find(".other .drawing"), () => {});
 const walk = new Percepts(find(".percepts"));
 
-function percept() {
-  const [v, i] = truth;
-  const degree = world[v].length;
-  return { degree, marker: v === start[0] ? (start[1] - i + degree) % degree : null };
-}
-
-const markerText = (marker) => (marker === null ? "no marker" : `the marker, along door ${marker}`);
-const perceptText = ({ degree, marker }) => `${doorsText(degree)}, ${markerText(marker)}`;
 const movesText = (count) => (count === 1 ? "1 move" : `${count} moves`);
+const sizeText = (graph) => `${graph.vertexCount === 1 ? "1 place" : `${graph.vertexCount} places`}`;
+const movesUpTo = (time) => actions.slice(0, time).filter(isDoor).length;
+const actionText = (action) => (isDoor(action) ? `door ${action}` : action);
 
-/** The name of a place; one that the robot has just reached has none. */
-const nameOf = ({ number }) => names.get(number) ?? "?";
-const current = () => places.find(({ darts }) => darts.includes(map.find(map.poses.at(-1))));
+/** The vertices of the map, by their names; one that the robot has just reached has none. */
+const nameOf = (vertex) => names.get(map.numbers[vertex]) ?? "?";
+const pose = () => map.poses.at(-1);
+const current = () => map.graph.vertex(pose());
+const vertexOf = (number) => map.numbers.indexOf(number);
+
+/** Where the robot was after so many actions, by the map before a contradiction. */
+function placeAfter(time) {
+  const name = time < map.poses.length ? nameOf(map.graph.vertex(map.poses[time])) : "?";
+  return name === "?" ? "this place" : name;
+}
 
 /** Folds the walk with the claims. A claim that contradicts it is not made: then the error is returned. */
 function fold() {
   try {
-    const next = new FoldedMap(percepts, doors, claims);
-    places = next.places();
-    map = next;
+    map = new FoldedMap(marker, percepts, actions, claims);
     contradiction = null;
   } catch (error) {
     if (!(error instanceof Contradiction)) throw error;
@@ -48,89 +57,103 @@ function fold() {
 }
 
 function nameCurrent() {
-  const { number } = current();
+  const number = map.numbers[current()];
   if (!names.has(number)) names.set(number, `v${names.size}`);
 }
 
-/** The robot goes through a door. */
-function go(door) {
+/** The robot goes through a door, or picks up or drops the marker. */
+function act(action) {
   if (finished) return say("The run has ended. Restart it to try again.");
-  const [v, i] = truth;
-  const degree = world[v].length;
-  if (door >= degree) return say(`There is no door ${door} here.`);
-  if (contradiction === null) nameCurrent();
-  truth = world[v][(i + door) % degree];
-  percepts.push(percept());
-  doors.push(door);
+  if (!robot.actions().includes(action)) {
+    const carrying = robot.carries ? "You carry the marker already." : "The marker is not here.";
+    if (isDoor(action)) return say(`There is no door ${action} here.`);
+    return say(action === DROP ? "You do not carry the marker." : carrying);
+  }
+  if (contradiction === null && isDoor(action)) nameCurrent();
+  robot.act(action);
+  percepts.push(robot.percept());
+  actions.push(action);
   fold();
   show();
-  const at = `Move ${doors.length}, door ${door}: ${perceptText(percepts.at(-1))}.`;
-  say(contradiction === null ? `${at} ${placeText()}` : `${at} ${wrongClaim()}`);
+  const at = `Move ${movesUpTo(actions.length)}, ${actionText(action)}: ${perceptText(percepts.at(-1))}.`;
+  say(`${at} ${contradiction === null ? placeText() : wrongClaim()}`);
 }
 
-/** Where the robot is on the map. */
+/** Where the robot is on the map, and whether the marker shows that it is elsewhere. */
 function placeText() {
-  const place = current();
-  if (names.has(place.number)) return `On your map, this is ${nameOf(place)}.`;
-  if (percepts.at(-1).marker !== null) return "The marker lies here: you know this place, so claim it.";
-  return "On your map, this is a new place.";
+  const isKnown = names.has(map.numbers[current()]);
+  const text = isKnown ? `On your map, this is ${nameOf(current())}.` : "On your map, this is a new place.";
+  const { sighting } = percepts.at(-1);
+  const expected = sightings(marker, map.graph, map.placed(actions), pose());
+  if (sighting === NOTHING || expected.includes(sighting)) return text;
+  const prompt = sighting.startsWith(PASSED)
+    ? "You passed the mark, and on your map the mark is elsewhere"
+    : "The marker lies here, and on your map it lies elsewhere";
+  return `${text} ${prompt}: you know this place, so claim it.`;
 }
 
-const wrongClaim = () => `A claim of yours is wrong: ${contradiction.message}. Withdraw it.`;
+const wrongClaim = () => `A claim of yours is wrong: ${contradiction.text(placeAfter)}. Withdraw it.`;
 
-/** Claims that the robot's pose is a dart of a place of the map. */
-function claim(number, index) {
+/** Claims that the robot's pose is a dart of a vertex of the map. */
+function claim(vertex, index) {
   if (finished) return;
   if (contradiction !== null) return say(wrongClaim());
-  const place = places.find((known) => known.number === number);
-  const dart = place.darts[index];
-  const name = nameOf(place);
-  if (map.find(map.poses.at(-1)) === dart) return say(`On your map, the robot came in by door ${index} of ${name}.`);
-  const known = map.poses.flatMap((pose, moves) => {
-    const turn = [...Array(place.darts.length).keys()].find((by) => map.find(map.turned(pose, by)) === dart);
-    return turn === undefined ? [] : [[moves, turn]];
-  });
-  const earlier = known.find(([moves]) => moves < doors.length) ?? known[0];
-  claims.push([earlier, [doors.length, 0]]);
-  const refused = fold();
-  if (refused !== null) {
+  const dart = map.graph.dart([vertex, index]);
+  const name = nameOf(vertex);
+  if (pose() === dart) return say(`On your map, the robot came in by door ${index} of ${name}.`);
+  const time = map.poses.findIndex((at) => map.graph.vertex(at) === vertex);
+  claims.push([[time, map.graph.door(map.poses[time], dart)], [actions.length, 0]]);
+  if (fold() !== null) {
+    const refused = contradiction.text(placeAfter);
     claims.pop();
     fold();
     show();
-    return say(`This cannot be door ${index} of ${name}: ${refused.message}.`);
+    return say(`This cannot be door ${index} of ${name}: ${refused}.`);
   }
   show();
   say(`This place is ${name}, and you came in by its door ${index}.`);
 }
 
-function withdraw() {
+/** A claim in words. */
+function claimText([[earlier, turn], [time]]) {
+  const [vertex, index] = map.graph.end(map.graph.turned(map.poses[earlier], turn));
+  return `Move ${movesUpTo(time)}: ${nameOf(vertex)}, by its door ${index}`;
+}
+
+function withdraw(claimed) {
   if (finished) return;
-  if (claims.pop() === undefined) return say("There is no claim to withdraw.");
+  if (claimed === undefined) return say("There is no claim to withdraw.");
+  const text = claimText(claimed);
+  claims = claims.filter((other) => other !== claimed);
   fold();
   if (contradiction === null) nameEarlier();
   show();
-  say(contradiction === null ? `The last claim is withdrawn. ${placeText()}` : wrongClaim());
+  say(contradiction === null ? `Withdrawn: ${text}. ${placeText()}` : wrongClaim());
 }
 
 /** Places that were one with others need names again, but for the one where the robot is. */
 function nameEarlier() {
-  for (const place of places) {
-    if (place !== current() && !names.has(place.number)) names.set(place.number, `v${names.size}`);
+  for (const [vertex, number] of map.numbers.entries()) {
+    if (vertex !== current() && !names.has(number)) names.set(number, `v${names.size}`);
   }
 }
 
-/** Begins again. Asks before it discards a run that has not ended. */
+/** Whether the person agrees to discard a run that has not ended. */
+const mayDiscard = () =>
+  finished || actions.length === 0 || confirm(`Discard this run of ${movesText(movesUpTo(actions.length))}?`);
+
 function restart() {
-  const isDiscarded = !finished && doors.length > 0;
-  if (isDiscarded && !confirm(`Discard this run of ${movesText(doors.length)}?`)) return;
-  begin();
+  if (mayDiscard()) begin(game);
 }
 
-function begin() {
-  truth = start;
-  percepts = [percept()];
-  doors = [];
-  claims = [];
+function nextWorld() {
+  if (mayDiscard()) begin(games[(game.number + 1) % games.length]);
+}
+
+function begin(chosen) {
+  game = chosen;
+  robot = new Robot(marker, game.graph, game.start);
+  [percepts, actions, claims] = [[robot.percept()], [], []];
   names = new Map([[0, "v0"]]);
   finished = false;
   find(".result").hidden = true;
@@ -140,7 +163,8 @@ function begin() {
   drawing.clear();
   fold();
   show();
-  say(`You begin: ${perceptText(percepts[0])}. Choose a door.`);
+  const which = games.length > 1 ? `World ${game.number + 1} of ${games.length}. ` : "";
+  say(`${which}You begin: ${perceptText(percepts[0])}. Choose a door.`);
 }
 
 // The end.
@@ -149,150 +173,209 @@ function begin() {
 function finish() {
   if (finished) return;
   if (contradiction !== null) return say(wrongClaim());
-  const lists = map.asLists();
-  const fault = faultOf(lists, world, start, truth);
+  const fault = faultOf(map.graph, pose(), game.graph, game.start, robot.pose);
   if (fault?.kind === "open") {
-    const open = nameOf(places[fault.vertex]);
+    const open = nameOf(fault.vertex);
     return say(`The map is not complete: a door of ${open === "?" ? "this place" : open} leads nowhere.`);
   }
   finished = true;
   nameEarlier();
-  if (!names.has(current().number)) nameCurrent();
-  const right = fault === null;
-  const proved = right && determinesWorld(percepts, doors);
-  find(".verdict").className = `verdict ${!right ? "diverged" : proved ? "conforms" : "not-known"}`;
-  write("#result-heading", !right ? "Wrong map" : proved ? "Right, and proved" : "Right, but guessed");
-  write(".reason", right ? rightText(proved) : faultText(fault));
-  compare(right);
-  find(".solution .ground").replaceChildren(find(".solution template").content.cloneNode(true));
+  nameCurrent();
+  const other = fault === null ? otherWorld() : null;
+  const { tone, heading, reason } = fault === null ? rightText(other) : { tone: "diverged", heading: "Wrong map", reason: faultText(fault) };
+  find(".verdict").className = `verdict ${tone}`;
+  write("#result-heading", heading);
+  write(".reason", reason);
+  compare(fault === null);
+  find(".solution .ground").replaceChildren(game.picture.content.cloneNode(true));
+  write(".solution .name", game.name);
   keepReadable(find(".solution svg"));
   find(".result").hidden = false;
   find(".doors").hidden = true;
+  showOther(other);
   show();
   find("#result-heading").focus();
   find(".result").scrollIntoView();
-  say(`The run has ended. ${find("#result-heading").textContent}.`);
+  say(`The run has ended. ${heading}.`);
 }
 
-function rightText(proved) {
-  const way = proved
-    ? "Your walk fits no other world: no robot that perceives this can be anywhere else."
-    : "But another world looks the same on your walk: the sightings of the marker do not prove all your claims.";
-  return `Your map is the world, and the robot is where you believe it to be. ${way}`;
+/** The smallest other world that explains the walk. */
+function otherWorld() {
+  if (marker === "directional" && determinesWorld(percepts, actions)) return { world: null, isComplete: true };
+  const isTrue = (graph) => faultOf(graph, 0, game.graph, game.start, game.start) === null;
+  return new WorldSearch(marker, percepts, actions, isTrue).run();
+}
+
+function rightText({ world, isComplete }) {
+  const right = "Your map is the world, and the robot is where you believe it to be.";
+  if (world !== null) {
+    const reason = `${right} But you guessed: in the other world below, too, a robot that takes your doors perceives what you perceived, and your map would be wrong.`;
+    return { tone: "not-known", heading: "Right, but guessed", reason };
+  }
+  if (isComplete) {
+    const reason = `${right} Your walk fits no other world: no robot that perceives this can be anywhere else.`;
+    return { tone: "conforms", heading: "Right, and proved", reason };
+  }
+  const reason = `${right} Whether another world fits your walk is not known: the search for one reached its limit.`;
+  return { tone: "not-known", heading: "Right, proof not known", reason };
 }
 
 function faultText({ kind, vertex, degree, vertices }) {
-  const name = (number) => nameOf(places[number]);
+  const yours = (number) => `your ${nameOf(number)}`;
   if (kind === "degree") {
-    return `Your map is not the world: where it has ${name(vertex)} with ${doorsText(places[vertex].darts.length)}, the world has a place with ${degree}.`;
+    return `Your map is not the world: ${yours(vertex)} has ${doorsText(map.graph.degrees[vertex])}, and the place of the world that it stands for has ${degree}.`;
   }
-  if (kind === "several") return `Your map is not the world: its ${name(vertex)} is several places, or one that is turned.`;
+  if (kind === "several") {
+    return `Your map is not the world: ${yours(vertex)} stands for several places of the world, or for one that is turned.`;
+  }
   if (kind === "twice") {
-    const [one, other] = vertices.map(name);
-    return `Your map is not the world: its ${one} and ${other} are one place.`;
+    const [one, other] = vertices.map(yours);
+    return `Your map is not the world: ${one} and ${other} are one place of the world.`;
   }
   return "Your map is the world, but the robot is not where you believe it to be.";
 }
 
-/** The table of moves: the certificate, the person, and both algorithms. */
+/** Draws the other world, with the robot and the marker as they are at the end of the walk. */
+function showOther(other) {
+  const graph = other?.world ?? null;
+  find(".other").hidden = graph === null;
+  if (graph === null) return;
+  const ghost = new Robot(marker, graph, 0);
+  for (const action of actions) ghost.act(action);
+  const numbers = [...graph.first.keys()];
+  write(".other .kind", other.isSmallest ? "The smallest other world" : "Another world");
+  write(".other .size", `${sizeText(graph)}, ${graph.dartCount / 2} edges`);
+  otherDrawing.clear();
+  otherDrawing.show({
+    graph,
+    numbers,
+    names: numbers.map((number) => `w${number}`),
+    pose: ghost.pose,
+    parts: markerParts(marker, graph, ghost.placed),
+  });
+}
+
+/** The table of moves: the certificate, the person, and the algorithms of this marker. */
 function compare(right) {
-  const [{ doors: shortest }] = walks;
-  const own = { name: right ? "You" : "You (wrong map)", doors };
-  const rows = [walks[0], own, ...walks.slice(1)].map(({ name, doors: taken }) => {
+  const own = { name: right ? "You" : "You (wrong map)", actions };
+  const [shortest] = game.walks.filter(({ isShortest }) => isShortest);
+  const rows = [...(shortest ? [shortest] : []), own, ...game.walks.filter(({ isShortest }) => !isShortest)];
+  const moves = ({ actions: taken }) => taken.filter(isDoor).length;
+  const cell = (text, style) => Object.assign(document.createElement("td"), { textContent: text, className: style });
+  const drawnRows = rows.map((taken) => {
     const row = document.createElement("tr");
-    row.classList.toggle("own", taken === doors);
-    const head = document.createElement("th");
-    head.scope = "row";
-    head.textContent = name;
-    const cell = (text, style) => Object.assign(document.createElement("td"), { textContent: text, className: style });
-    const ratio = (taken.length / shortest.length).toFixed(2);
-    row.append(head, cell(taken.length, "right"), cell(ratio, "right"), cell(taken.join(" "), "faint"));
+    row.classList.toggle("own", taken === own);
+    const head = Object.assign(document.createElement("th"), { scope: "row", textContent: taken.name });
+    const ratio = shortest ? [cell((moves(taken) / moves(shortest)).toFixed(2), "right")] : [];
+    row.append(head, cell(moves(taken), "right"), ...ratio, cell(taken.actions.join(" "), "faint"));
     return row;
   });
-  find(".comparison tbody").replaceChildren(...rows);
+  find(".comparison .ratio").hidden = !shortest;
+  find(".comparison tbody").replaceChildren(...drawnRows);
 }
 
 // Showing.
 
 function show() {
   const now = percepts.at(-1);
-  here.show(now);
-  write(".percept", perceptText(now));
-  write(".moves", movesText(doors.length));
-  document.body.classList.toggle("begun", doors.length > 0);
-  drawing.show(map, places, nameOf, contradiction === null ? map.find(map.poses.at(-1)) : null);
+  here.show(now, robot.carries);
+  write(".play .percept", perceptText(now) + (robot.carries ? "; you carry the marker" : ""));
+  write(".moves", movesText(movesUpTo(actions.length)));
+  document.body.classList.toggle("begun", actions.length > 0);
+  const parts = contradiction === null ? markerParts(marker, map.graph, map.placed(actions)) : [];
+  const { graph, numbers } = map;
+  drawing.show({ graph, numbers, names: numbers.map((_, vertex) => nameOf(vertex)), pose: contradiction === null ? pose() : null, parts });
   find(".map").classList.toggle("differs", contradiction !== null);
   showSize();
-  showList();
+  showList(parts);
   showWalk();
-  showDoors(now.degree);
+  showActions();
   showClaim();
+  showClaims();
 }
 
 function showSize() {
-  const open = places.flatMap(({ darts }) => darts).filter((dart) => map.opposite(dart) === null).length;
-  const count = places.length === 1 ? "1 place" : `${places.length} places`;
-  write(".size", open === 0 ? `${count}, no open door` : `${count}, ${open} open door${open === 1 ? "" : "s"}`);
+  const open = map.graph.open().length;
+  write(".map .size", `${sizeText(map.graph)}, ${open === 0 ? "no" : open} open door${open === 1 ? "" : "s"}`);
 }
 
 /** Where a dart of the map leads, in words. */
 function leadsTo(dart) {
-  const far = map.opposite(dart);
-  if (far === null) return "open";
-  const place = places.find(({ darts }) => darts.includes(far));
-  return `to door ${place.darts.indexOf(far)} of ${nameOf(place)}`;
+  const far = map.graph.opposite(dart);
+  return far === null ? "open" : `to door ${map.graph.index(far)} of ${nameOf(map.graph.vertex(far))}`;
 }
 
-function showList() {
-  const items = places.map((place) => {
-    const marker = place.marker === null ? "" : `, the marker along door ${place.darts.indexOf(place.marker)}`;
-    const at = contradiction === null && place === current() ? " (you are here)" : "";
-    const ways = place.darts.map((dart, index) => `${index} ${leadsTo(dart)}`).join(", ");
-    return Object.assign(document.createElement("li"), { textContent: `${nameOf(place)}${at}${marker}: ${ways}` });
+/** Where a part of the marker is, in words, if it is at a place or behind its doors. */
+function partText({ dart, drawn }) {
+  const door = map.graph.index(dart);
+  const texts = { pointing: `the marker along door ${door}`, edge: `the mark behind door ${door}`, arrow: `the mark behind door ${door}` };
+  return texts[drawn] ?? (drawn === "second" ? "the second marker" : "the marker");
+}
+
+function showList(parts) {
+  const items = map.numbers.map((_, vertex) => {
+    const marked = parts.filter(({ dart }) => map.graph.vertex(dart) === vertex).map((part) => `, ${partText(part)}`);
+    const at = contradiction === null && vertex === current() ? " (you are here)" : "";
+    const ways = map.graph.darts(vertex).map((dart, index) => `${index} ${leadsTo(dart)}`).join(", ");
+    return Object.assign(document.createElement("li"), { textContent: `${nameOf(vertex)}${at}${marked.join("")}: ${ways}` });
   });
   find(".listed ul").replaceChildren(...items);
 }
 
 function showWalk() {
   for (let step = walk.length; step < percepts.length; step += 1) {
-    walk.add(doors[step - 1], [perceptText(percepts[step])]);
+    walk.add(actions[step - 1], [perceptText(percepts[step])]);
   }
 }
 
-/** A button for each door of the place. */
-function showDoors(degree) {
+/** A button for each action. */
+function showActions() {
   const row = find(".doors");
   const focused = [...row.children].indexOf(document.activeElement);
-  const buttons = [...Array(degree).keys()].map((door) => actionButton(String(door), () => go(door)));
+  const buttons = robot.actions().map((action) => actionButton(action, () => act(action)));
   row.replaceChildren(...buttons);
-  if (focused >= 0) buttons[Math.min(focused, degree - 1)].focus();
+  if (focused >= 0) buttons[Math.min(focused, buttons.length - 1)].focus();
 }
 
 /** The places that the robot may be at, but for the one where it is on the map. */
 function showClaim() {
-  const others = contradiction === null ? places.filter((place) => place !== current()) : [];
-  const options = others.map((place) => {
-    const text = `${nameOf(place)}, ${doorsText(place.darts.length)}${place.marker === null ? "" : ", marker"}`;
-    return Object.assign(document.createElement("option"), { value: place.number, textContent: text });
+  const others = contradiction === null ? [...map.numbers.keys()].filter((vertex) => vertex !== current()) : [];
+  const options = others.map((vertex) => {
+    const text = `${nameOf(vertex)}, ${doorsText(map.graph.degrees[vertex])}`;
+    return Object.assign(document.createElement("option"), { value: map.numbers[vertex], textContent: text });
   });
   const chosen = find("#place").value;
   find("#place").replaceChildren(...options);
-  if (others.some(({ number }) => String(number) === chosen)) find("#place").value = chosen;
+  if (options.some(({ value }) => value === chosen)) find("#place").value = chosen;
   showDarts();
   for (const id of ["#claim", "#place", "#dart"]) find(id).disabled = finished || options.length === 0;
-  find("#withdraw").setAttribute("aria-disabled", String(finished || claims.length === 0));
   find("#finish").setAttribute("aria-disabled", String(finished));
 }
 
 function showDarts() {
-  const place = places.find(({ number }) => String(number) === find("#place").value);
-  const options = (place?.darts ?? []).map((dart, index) => {
+  const vertex = vertexOf(Number(find("#place").value || NaN));
+  const darts = vertex < 0 ? [] : map.graph.darts(vertex);
+  const options = darts.map((dart, index) => {
     const text = `${index}, ${leadsTo(dart)}`;
     return Object.assign(document.createElement("option"), { value: index, textContent: text });
   });
-  const open = (place?.darts ?? []).findIndex((dart) => map.opposite(dart) === null);
+  const open = darts.findIndex((dart) => map.graph.opposite(dart) === null);
   find("#dart").replaceChildren(...options);
   if (open >= 0) find("#dart").value = open;
+}
+
+/** The claims, each with a button that withdraws it. */
+function showClaims() {
+  find(".claims").hidden = claims.length === 0;
+  const items = claims.map((claimed) => {
+    const button = actionButton("Withdraw", () => withdraw(claimed));
+    button.setAttribute("aria-label", `Withdraw: ${claimText(claimed)}`);
+    button.setAttribute("aria-disabled", String(finished));
+    const item = document.createElement("li");
+    item.append(claimText(claimed), button);
+    return item;
+  });
+  find(".claims ul").replaceChildren(...items);
 }
 
 /** A dart was pressed on the map: it is chosen for a claim. */
@@ -302,8 +385,7 @@ function choose(number, index) {
   find("#place").value = number;
   showDarts();
   find("#dart").value = index;
-  const place = places.find((known) => known.number === number);
-  say(`Claim that this place is ${nameOf(place)}, and that you came in by its door ${index}?`);
+  say(`Claim that this place is ${nameOf(vertexOf(number))}, and that you came in by its door ${index}?`);
   find("#claim").focus();
 }
 
@@ -311,7 +393,7 @@ function choose(number, index) {
 
 function submitClaim() {
   if (find("#place").value === "") return say("There is no other place on your map.");
-  claim(Number(find("#place").value), Number(find("#dart").value));
+  claim(vertexOf(Number(find("#place").value)), Number(find("#dart").value));
 }
 
 find("#place").addEventListener("change", showDarts);
@@ -319,9 +401,10 @@ find(".claim").addEventListener("submit", (event) => {
   event.preventDefault();
   submitClaim();
 });
-find("#withdraw").addEventListener("click", withdraw);
 find("#finish").addEventListener("click", finish);
 find("#restart").addEventListener("click", restart);
+find("#another").addEventListener("click", nextWorld);
+find("#another").hidden = games.length === 1;
 
 const enlarge = () => drawing.enlarge(ENLARGED);
 const reduce = () => drawing.enlarge(1 / ENLARGED);
@@ -329,12 +412,24 @@ find("#enlarge").addEventListener("click", enlarge);
 find("#reduce").addEventListener("click", reduce);
 find("#fit").addEventListener("click", () => drawing.fit());
 
-const keys = { "+": enlarge, "-": reduce, c: () => find("#place").focus(), w: withdraw, f: finish, r: restart };
+const keys = {
+  "+": enlarge,
+  "-": reduce,
+  c: () => find("#place").focus(),
+  w: () => withdraw(claims.at(-1)),
+  f: finish,
+  r: restart,
+};
+if (games.length > 1) keys.n = nextWorld;
+if (marker === MOVABLE) Object.assign(keys, { p: () => act(PICK_UP), d: () => act(DROP) });
+for (const [selector, isUsed] of [[".of-another", games.length > 1], [".of-movable", marker === MOVABLE]]) {
+  find(selector).hidden = !isUsed;
+}
 onKey((event) => {
   const door = doorOfKey(event);
-  const act = door === null ? keys[event.key.toLowerCase()] : () => go(Number(door));
+  const action = door === null ? keys[event.key.toLowerCase()] : () => act(door);
   // A key that is held counts once: each move costs.
-  return act && (event.repeat ? () => {} : act);
+  return action && (event.repeat ? () => {} : action);
 });
 
-begin();
+begin(game);

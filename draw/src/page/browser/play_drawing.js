@@ -13,6 +13,17 @@ const MOVING = 300;
 const ENLARGED = 1.5;
 const MOST_ENLARGED = 8;
 
+/** The mark on a hallway, around the origin: an arrow in a direction, or a bar across it. */
+function mark(kind, turn) {
+  const corner = (angle, away) => {
+    const { x, y } = polar({ x: 0, y: 0 }, turn + angle, away);
+    return `${x.toFixed(1)} ${y.toFixed(1)}`;
+  };
+  const arrow = `M${corner(0, 11)}L${corner(2.4, 9)}L${corner(-2.4, 9)}Z`;
+  const bar = `M${corner(1.2, 8)}L${corner(1.94, 8)}L${corner(-1.94, 8)}L${corner(-1.2, 8)}Z`;
+  return drawn("path", { class: "mark", d: kind === "arrow" ? arrow : bar });
+}
+
 class MapDrawing {
   /** `onDart(number, index)` is called with the number of a place and the index of its dart. */
   constructor(svg, onDart) {
@@ -53,26 +64,39 @@ class MapDrawing {
     this.draw();
   }
 
-  /** Shows the places of a folded map; `name(place)` is the text on one, `pose` the robot's dart. */
-  show(map, places, name, pose) {
-    const at = new Map(places.flatMap(({ darts }, place) => darts.map((dart, index) => [dart, [place, index]])));
-    const isFirst = (dart) => map.opposite(dart) !== null && map.opposite(dart) > dart;
-    const links = [...at.keys()].filter(isFirst).map((dart) => [at.get(dart), at.get(map.opposite(dart))]);
-    const known = places.map(({ number }) => this.spots.get(number) ?? null);
-    const spots = layOut(places.map(({ darts }) => darts.length), links, known);
-    this.spots = new Map(places.map(({ number }, place) => [number, spots[place]]));
+  /**
+   * Shows a graph. `numbers` has a number for each vertex that it keeps from one graph to the next, `names` its text;
+   * `pose` is the robot's dart or null; `parts` is where the marker is.
+   */
+  show({ graph, numbers, names, pose, parts }) {
+    const isFirst = (dart) => graph.opposite(dart) !== null && graph.opposite(dart) > dart;
+    const first = [...graph.far.keys()].filter(isFirst);
+    const links = first.map((dart) => [graph.end(dart), graph.end(graph.opposite(dart))]);
+    const known = numbers.map((number) => this.spots.get(number) ?? null);
+    const spots = layOut(graph.degrees, links, known);
+    this.spots = new Map(numbers.map((number, place) => [number, spots[place]]));
     // A new place comes from the one by which it was reached.
     const reached = (place) => links.flatMap(([[a], [b]]) => (a === place ? [b] : b === place ? [a] : []));
     const origin = (place) => known[place] ?? reached(place).map((other) => known[other]).find(Boolean) ?? spots[place];
-    const before = places.map((_, place) => ({ ...origin(place), turn: known[place]?.turn ?? spots[place].turn }));
-    this.places = places.map((place) => ({
-      number: place.number,
-      name: name(place),
-      here: place.darts.indexOf(pose),
-      marker: place.darts.indexOf(place.marker),
-      open: place.darts.map((dart) => map.opposite(dart) === null),
+    const before = numbers.map((_, place) => ({ ...origin(place), turn: known[place]?.turn ?? spots[place].turn }));
+    const drawnAt = (dart, ...kinds) => parts.find((part) => part.dart === dart && kinds.includes(part.drawn))?.drawn;
+    this.places = numbers.map((number, place) => ({
+      number,
+      name: names[place],
+      here: graph.darts(place).indexOf(pose),
+      rings: parts.filter(({ dart, drawn }) => graph.vertex(dart) === place && ["lying", "second"].includes(drawn)),
+      doors: graph.darts(place).map((dart) => ({
+        isOpen: graph.opposite(dart) === null,
+        isPointed: drawnAt(dart, "pointing") !== undefined,
+        isMarked: drawnAt(dart, "edge", "arrow") !== undefined,
+      })),
     }));
     this.links = links;
+    // For each link, the sign in its middle, and whether it points from the first end to the other one.
+    this.signs = first.map((dart) => {
+      const ends = [dart, graph.opposite(dart)].map((end) => drawnAt(end, "edge", "arrow"));
+      return { kind: ends[0] ?? ends[1], isForward: ends[0] !== undefined };
+    });
     this.target = spots;
     const robot = this.places.findIndex(({ here }) => here >= 0);
     if (this.scale > 1 && robot >= 0) this.middle = spots[robot];
@@ -120,7 +144,7 @@ class MapDrawing {
   }
 
   curve(spots, [[a, i], [b, j]], places) {
-    const end = (place, index) => [spots[place], index, this.places[place].open.length];
+    const end = (place, index) => [spots[place], index, this.places[place].doors.length];
     return hallwayCurve(end(a, i), end(b, j), places * DISC);
   }
 
@@ -132,14 +156,24 @@ class MapDrawing {
     const box = [x - width / this.scale / 2, y - height / this.scale / 2, width / this.scale, height / this.scale];
     this.svg.setAttribute("viewBox", box.map((n) => n.toFixed(1)).join(" "));
     this.svg.classList.toggle("enlarged", this.scale > 1);
-    const edges = this.links.map((link) => {
-      const [from, p, q, to] = this.curve(this.shown, link, size).map((at) => `${at.x.toFixed(1)} ${at.y.toFixed(1)}`);
-      return drawn("path", { d: `M${from}C${p} ${q} ${to}` });
-    });
+    const edges = this.links.flatMap((link, index) => this.edge(this.curve(this.shown, link, size), this.signs[index], size));
     const discs = this.places.map((place, index) => this.disc(place, this.shown[index], size));
     const robots = this.places.flatMap((place, index) => (place.here < 0 ? [] : [this.robot(place, this.shown[index], size)]));
     const reaches = this.places.flatMap((place, index) => this.reaches(place, this.shown[index], size));
     this.svg.replaceChildren(...[edges, discs, robots, reaches].map((layer) => drawn("g", {}, ...layer)));
+  }
+
+  /** A hallway, with the mark in its middle if it has one. */
+  edge(curve, { kind, isForward }, size) {
+    const [from, p, q, to] = curve.map((at) => `${at.x.toFixed(1)} ${at.y.toFixed(1)}`);
+    const path = drawn("path", { d: `M${from}C${p} ${q} ${to}` });
+    if (kind === undefined) return [path];
+    path.classList.add("marked");
+    const [a, b, c, d] = curve;
+    const middle = { x: (a.x + 3 * b.x + 3 * c.x + d.x) / 8, y: (a.y + 3 * b.y + 3 * c.y + d.y) / 8 };
+    const along = between({ x: a.x + b.x, y: a.y + b.y }, { x: c.x + d.x, y: c.y + d.y });
+    const turn = isForward ? along : along + Math.PI;
+    return [path, this.group({ ...middle }, size, [mark(kind, turn)])];
   }
 
   /** A place around the origin, enlarged. */
@@ -148,26 +182,26 @@ class MapDrawing {
     return drawn("g", { transform: place }, ...parts);
   }
 
-  disc({ name, here, marker, open }, spot, size) {
+  disc({ name, here, rings, doors }, spot, size) {
     const center = { x: 0, y: 0 };
     const parts = [
+      ...rings.map((ring, index) => drawn("circle", { class: `ring ${ring.drawn}`, r: DISC + 5 + 4 * index })),
       drawn("circle", { class: here >= 0 ? "disc here" : "disc", r: DISC }),
       drawn("text", { class: "name", y: 5, "font-size": 14 }, name),
     ];
-    for (const [index, isOpen] of open.entries()) {
-      const angle = doorAngle(spot, index, open.length);
+    for (const [index, { isOpen, isPointed, isMarked }] of doors.entries()) {
+      const angle = doorAngle(spot, index, doors.length);
       const [knob, end, label] = [polar(center, angle, DISC), polar(center, angle, DISC + STUB), polar(center, angle + 0.46, DISC + 11)];
-      if (isOpen) parts.push(drawn("path", { class: "open", d: `M${knob.x} ${knob.y}L${end.x} ${end.y}` }));
-      const isMarked = marker === index;
-      parts.push(drawn("circle", { class: isMarked ? "knob marker" : "knob", cx: knob.x, cy: knob.y, r: isMarked ? 6 : 3 }));
+      if (isOpen) parts.push(drawn("path", { class: isMarked ? "open marked" : "open", d: `M${knob.x} ${knob.y}L${end.x} ${end.y}` }));
+      parts.push(drawn("circle", { class: isPointed ? "knob marker" : "knob", cx: knob.x, cy: knob.y, r: isPointed ? 6 : 3 }));
       parts.push(drawn("text", { class: "index", x: label.x, y: label.y + 4, "font-size": SMALLEST }, String(index)));
     }
     return this.group(spot, size, parts);
   }
 
   /** The robot, in the door by which it came in. */
-  robot({ here, open }, spot, size) {
-    const angle = doorAngle(spot, here, open.length);
+  robot({ here, doors }, spot, size) {
+    const angle = doorAngle(spot, here, doors.length);
     const at = polar({ x: 0, y: 0 }, angle, DISC + 11);
     const corner = (turn, away) => {
       const { x, y } = polar(at, angle + turn, away);
@@ -178,9 +212,9 @@ class MapDrawing {
   }
 
   /** Where doors can be pressed. */
-  reaches({ number, open }, spot, size) {
-    const parts = open.map((_, index) => {
-      const at = polar({ x: 0, y: 0 }, doorAngle(spot, index, open.length), DISC + 8);
+  reaches({ number, doors }, spot, size) {
+    const parts = doors.map((_, index) => {
+      const at = polar({ x: 0, y: 0 }, doorAngle(spot, index, doors.length), DISC + 8);
       const target = drawn("circle", { class: "reach", cx: at.x, cy: at.y, r: 15 });
       target.addEventListener("click", () => this.onDart(number, index));
       return target;

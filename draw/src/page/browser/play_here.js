@@ -7,14 +7,15 @@ class Here {
     svg.setAttribute("viewBox", "-110 -110 220 220");
   }
 
-  show({ degree, marker }) {
+  show({ degree, sighting }, carries) {
     const parts = [drawn("circle", { class: "floor", r: 46 })];
+    const pointed = pointedDoor(sighting);
     for (let door = 0; door < degree; door += 1) {
       // Door 0 is below; clockwise, the next one is to the left.
       const angle = Math.PI / 2 + (door * 2 * Math.PI) / degree;
       const [near, far, at] = [44, 74, 90].map((away) => polar({ x: 0, y: 0 }, angle, away));
       parts.push(drawn("path", { class: "hallway", d: `M${near.x} ${near.y}L${far.x} ${far.y}` }));
-      if (door === marker) parts.push(this.arrow(angle));
+      if (door === pointed) parts.push(this.arrow(angle));
       const size = degree > 9 ? 11 : 15;
       const group = drawn(
         "g",
@@ -22,21 +23,42 @@ class Here {
         drawn("circle", { class: "badge", cx: at.x, cy: at.y, r: size }),
         drawn("text", { x: at.x, y: at.y + size / 3, "font-size": size }, String(door)),
       );
-      group.addEventListener("click", () => this.onDoor(door));
+      group.addEventListener("click", () => this.onDoor(String(door)));
       parts.push(group);
     }
-    parts.push(drawn("path", { class: "robot", d: "M0 -13L10 11L0 6L-10 11Z" }));
+    parts.push(...this.signs(sighting));
+    parts.push(drawn("path", { class: carries ? "robot carrying" : "robot", d: "M0 -13L10 11L0 6L-10 11Z" }));
     this.svg.replaceChildren(...parts);
-    const along = marker === null ? "no marker" : `the marker points along door ${marker}`;
-    this.svg.setAttribute("aria-label", `The robot's place: ${doorsText(degree)}, ${along}`);
+    const marker = carries ? "you carry the marker" : sighting;
+    this.svg.setAttribute("aria-label", `The robot's place: ${doorsText(degree)}, ${marker}`);
   }
 
-  /** The marker: an arrow on the floor along its door. */
+  /** A directional marker: an arrow on the floor along its door. */
   arrow(angle) {
     const corner = (turn, away) => {
       const { x, y } = polar({ x: 0, y: 0 }, angle + turn, away);
       return `${x.toFixed(1)} ${y.toFixed(1)}`;
     };
     return drawn("path", { class: "marker", d: `M${corner(0, 43)}L${corner(0.32, 27)}L${corner(-0.32, 27)}Z` });
+  }
+
+  /** Markers that lie here, and a mark on the hallway behind the robot. */
+  signs(sighting) {
+    // The robot came up from below.
+    const along = { [AGAINST]: Math.PI / 2, [ALONG]: -Math.PI / 2 }[sighting];
+    if (along !== undefined || sighting === PASSED) {
+      const sign = mark(along === undefined ? "edge" : "arrow", along ?? Math.PI / 2);
+      return [drawn("g", { transform: "translate(0 60)" }, sign)];
+    }
+    const lying = (x, look) => drawn("circle", { class: `lying ${look}`, cx: x, cy: -26, r: 8 });
+    const looks = {
+      marker: ["first"],
+      "first marker": ["first"],
+      "second marker": ["second"],
+      "2 markers": ["first", "first"],
+      "both markers": ["first", "second"],
+    };
+    const here = looks[sighting] ?? [];
+    return here.map((look, index) => lying(22 * (index - (here.length - 1) / 2), look));
   }
 }

@@ -1,33 +1,42 @@
-// The map of the person: the trail of the walk, folded as far as the person claims. A dart is a number; the
-// darts of a place of the trail follow one another clockwise, the entry first.
+// The map of the person: the trail of the walk, folded as far as the person claims. A dart is a number; the darts of a
+// place of the trail follow one another clockwise, the entry first.
 
-/** Thrown where a walk and claims contradict each other; the message is a clause. */
-class Contradiction extends Error {}
+/** Thrown if a walk and claims contradict each other. */
+class Contradiction extends Error {
+  /** `text(name)` is a clause; `name` returns the name of the place where the robot was after a number of moves. */
+  constructor(text) {
+    super();
+    this.text = text;
+  }
+}
 
 class FoldedMap {
   /**
-   * `percepts`: the degree and the marker's door (or null) at the start and after each move; `doors`: the door
-   * of each move; `claims`: pairs of poses that are one, each a number of moves and a turn.
+   * `percepts`: the degree and the sighting at the start and after each action; `actions`: doors as texts, and those on
+   * the marker; `claims`: pairs of poses that are one, each the number of actions before it and a turn.
    */
-  constructor(percepts, doors, claims) {
+  constructor(marker, percepts, actions, claims) {
     this.first = [];
     this.degree = [];
-    this.markers = [];
+    /** For each place of the trail, the number of actions before the robot first came there. */
+    this.time = [];
     this.place = [];
     this.parent = [];
     this.far = [];
-    this.poses = [this.add(percepts[0])];
-    for (const [step, door] of doors.entries()) this.step(door, percepts[step + 1]);
+    this.trailPoses = [this.add(percepts[0].degree, 0)];
+    for (const [step, action] of actions.entries()) this.step(action, percepts[step + 1].degree, step + 1);
     for (const [one, other] of claims) this.unite(this.posed(one), this.posed(other));
+    this.build();
+    this.checkSightings(marker, percepts, actions);
   }
 
   /** Adds a place, and returns its entry dart. */
-  add({ degree, marker }) {
+  add(degree, time) {
     const entry = this.place.length;
     const number = this.first.length;
     this.first.push(entry);
     this.degree.push(degree);
-    this.markers.push(marker === null ? null : entry + marker);
+    this.time.push(time);
     for (let index = 0; index < degree; index += 1) {
       this.place.push(number);
       this.parent.push(entry + index);
@@ -36,15 +45,16 @@ class FoldedMap {
     return entry;
   }
 
-  step(door, percept) {
-    const from = this.turned(this.poses.at(-1), door);
+  step(action, degree, time) {
+    const at = this.trailPoses.at(-1);
+    if (!isDoor(action)) return this.trailPoses.push(at);
+    const from = this.turned(at, Number(action));
     if (this.far[from] === null) {
-      const entry = this.add(percept);
+      const entry = this.add(degree, time);
       this.far[from] = entry;
       this.far[entry] = from;
     }
-    // Only edges that the robot goes back over are known here, and they look the same again.
-    this.poses.push(this.far[from]);
+    return this.trailPoses.push(this.far[from]);
   }
 
   /** The dart some places clockwise from another. */
@@ -54,9 +64,9 @@ class FoldedMap {
     return first + ((dart - first + places) % this.degree[place]);
   }
 
-  /** The pose after some moves, turned. */
-  posed([moves, turn]) {
-    return this.turned(this.poses[moves], turn);
+  /** The pose after some actions, turned. */
+  posed([actions, turn]) {
+    return this.turned(this.trailPoses[actions], turn);
   }
 
   find(dart) {
@@ -73,15 +83,16 @@ class FoldedMap {
     while (left.length > 0) {
       const [a, b] = left.pop();
       if (this.find(a) === this.find(b)) continue;
-      const [here, there] = [this.place[a], this.place[b]];
-      if (this.degree[here] !== this.degree[there]) {
-        throw new Contradiction(`one place has ${doorsText(this.degree[here])}, the other ${this.degree[there]}`);
+      const places = [this.place[a], this.place[b]];
+      const [here, there] = places.map((place) => this.degree[place]);
+      const [then, now] = places.map((place) => this.time[place]);
+      if (here !== there) {
+        throw new Contradiction((name) => `${name(then)} has ${doorsText(here)}, ${name(now)} has ${there}`);
       }
-      for (let turn = 0; turn < this.degree[here]; turn += 1) {
+      for (let turn = 0; turn < here; turn += 1) {
         const far = this.join(this.turned(a, turn), this.turned(b, turn));
         if (far) left.push(far);
       }
-      this.check(here);
     }
   }
 
@@ -95,75 +106,69 @@ class FoldedMap {
     return ends.includes(null) ? null : ends;
   }
 
-  /** Looks at every place that is now one with a place. */
-  check(place) {
-    const root = this.find(this.first[place]);
-    const same = this.first.flatMap((entry, other) => {
-      const turns = [...Array(this.degree[other]).keys()];
-      return turns.some((turn) => this.find(entry + turn) === root) ? [other] : [];
-    });
-    for (const other of same) {
-      const roots = new Set();
-      for (let turn = 0; turn < this.degree[other]; turn += 1) roots.add(this.find(this.first[other] + turn));
-      if (roots.size < this.degree[other]) throw new Contradiction("two doors of one place would be the same door");
-    }
-    const marked = same.map((other) => this.markers[other]);
-    if (marked.every((marker) => marker === null)) return;
-    if (marked.includes(null)) throw new Contradiction("the marker lies at one place and not at the other");
-    const along = new Set(marked.map((marker) => this.find(marker)));
-    if (along.size > 1) throw new Contradiction("the marker would point along two doors");
-  }
-
-  /** The other end of a dart; null if it is not known. */
-  opposite(dart) {
-    const far = this.far[this.find(dart)];
-    return far === null ? null : this.find(far);
-  }
-
   /**
-   * The places of the map, each by the least place of the trail that it is: its darts clockwise from its first
-   * entry. Throws if a dart would be its own other end.
+   * The map as a graph, whose dart 0 is the one behind the robot at the start; for each vertex the least place of the
+   * trail that it is; and the poses in the map. The darts of a vertex begin with its first entry.
    */
-  places() {
-    const places = [];
-    const known = new Set();
+  build() {
+    this.graph = new Graph();
+    this.numbers = [];
+    const darts = new Map();
     for (const [number, entry] of this.first.entries()) {
-      const darts = [...Array(this.degree[number]).keys()].map((turn) => this.find(entry + turn));
-      if (known.has(darts[0])) continue;
-      for (const dart of darts) known.add(dart);
-      places.push({ number, darts, marker: this.markers[number] === null ? null : this.find(this.markers[number]) });
+      const roots = [...Array(this.degree[number]).keys()].map((turn) => this.find(entry + turn));
+      const name = this.time[number];
+      if (new Set(roots).size < roots.length) {
+        throw new Contradiction((of) => `two doors of ${of(name)} would be the same door`);
+      }
+      if (darts.has(roots[0])) continue;
+      const first = this.graph.add(roots.length);
+      this.numbers.push(number);
+      for (const [index, root] of roots.entries()) darts.set(root, first + index);
     }
-    for (const dart of known) {
-      if (this.opposite(dart) === dart) throw new Contradiction("a hallway would have only one end");
+    for (const [root, dart] of darts) {
+      const far = this.far[root] === null ? null : darts.get(this.find(this.far[root]));
+      if (far === dart) throw new Contradiction(() => "a hallway would have only one end");
+      this.graph.far[dart] = far;
     }
-    return places;
+    this.poses = this.trailPoses.map((pose) => darts.get(this.find(pose)));
   }
 
-  /** The map as the judge takes it: the other end of each dart of each place, and the robot's pose. */
-  asLists() {
-    const places = this.places();
-    const ends = new Map(places.flatMap(({ darts }, v) => darts.map((dart, i) => [dart, [v, i]])));
-    const end = (dart) => (this.opposite(dart) === null ? null : ends.get(this.opposite(dart)));
-    return {
-      map: places.map(({ darts }) => darts.map(end)),
-      pose: ends.get(this.find(this.poses.at(-1))),
-    };
+  /** Looks for two percepts that one place, or one edge, cannot have. */
+  checkSightings(marker, percepts, actions) {
+    let known = new Map();
+    let carries = false;
+    for (const [time, { sighting }] of percepts.entries()) {
+      const action = actions[time - 1];
+      // A marker that is moved is in another place.
+      if (action === PICK_UP || action === DROP) [known, carries] = [new Map(), action === PICK_UP];
+      if (carries) continue;
+      const [key, value] = shownBy(marker, this.graph, this.poses[time], sighting);
+      const before = known.get(key) ?? { value, time, sighting };
+      if (before.value !== value) {
+        const seen = (at, what) => `“${what}” at ${at}`;
+        throw new Contradiction(
+          (name) => `you perceived ${seen(name(before.time), before.sighting)} and ${seen(name(time), sighting)}`,
+        );
+      }
+      known.set(key, before);
+    }
+  }
+
+  /** The dart that places the marker after all actions, or null. */
+  placed(actions) {
+    const moved = actions.findLastIndex((action) => action === PICK_UP || action === DROP);
+    if (moved < 0) return this.poses[0];
+    return actions[moved] === DROP ? this.poses[moved + 1] : null;
   }
 }
 
-const doorsText = (degree) => (degree === 1 ? "1 door" : `${degree} doors`);
-
-/** The claims that the marker proves: each sighting of it is one pose. */
+/** The claims that a directional marker proves: each sighting of it is one pose. */
 function markerClaims(percepts) {
-  const claims = [];
-  for (const [moves, { marker }] of percepts.entries()) {
-    if (marker !== null && moves > 0) claims.push([[0, percepts[0].marker], [moves, marker]]);
-  }
-  return claims;
+  const [start, ...later] = percepts.map(({ sighting }) => pointedDoor(sighting));
+  return later.flatMap((door, step) => (door === null ? [] : [[[0, start], [step + 1, door]]]));
 }
 
-/** Whether a walk determines its world: its folded trail has no open dart. */
-function determinesWorld(percepts, doors) {
-  const { map } = new FoldedMap(percepts, doors, markerClaims(percepts)).asLists();
-  return map.every((ends) => ends.every((end) => end !== null));
+/** Whether a walk with a directional marker determines its world: its folded trail has no open dart. */
+function determinesWorld(percepts, actions) {
+  return new FoldedMap("directional", percepts, actions, markerClaims(percepts)).graph.open().length === 0;
 }

@@ -6,48 +6,63 @@ use toposlam_model::{
     folding,
     format::named_world::NamedWorld,
     mapping::{MapWalk, MappingAlgorithm, MappingEvent},
-    percept::Door,
-    world::GraphWorld,
+    marker::{Directional, Marker},
+    world::{Action, GraphWorld},
 };
 
-use crate::page::template::in_script;
+use super::facing_of;
+use crate::page::{
+    graph_json::{dart_json, graph_json},
+    template::in_script,
+};
 
-/// The world, the start, and the walks to compare with, the shortest possible first.
-pub(super) fn json(world: &NamedWorld, facing: Dart) -> String {
-    let graph = &world.graph;
-    let end = |dart: Dart| json!([graph.vertex(dart).at(), graph.index(dart)]);
-    let vertex = |vertex| -> Value {
-        graph.darts_of(vertex).map(|dart| end(graph.opposite(dart))).collect()
-    };
-    let walk = |name: &str, doors: Vec<Door>| {
-        let doors: Vec<u32> = doors.into_iter().map(|door| door.0).collect();
-        json!({ "name": name, "doors": doors })
-    };
-    let walk_of = |algorithm: MappingAlgorithm| {
-        walk(algorithm.info().title, doors_of(algorithm, graph, facing))
-    };
-    let data = json!({
-        "world": graph.vertices().map(vertex).collect::<Value>(),
-        "start": end(facing),
-        "walks": [
-            walk("Certificate", folding::certificate(graph, facing)),
-            walk_of(MappingAlgorithm::Folding),
-            walk_of(MappingAlgorithm::Algorithm1),
-        ],
-    });
-    in_script(&data)
+pub(super) fn json(games: &[NamedWorld], marker: &dyn Marker) -> String {
+    let games = games.iter().map(|world| game(world, marker)).collect::<Vec<_>>();
+    in_script(&json!({ "marker": marker.name(), "games": games }))
 }
 
-/// The doors that an algorithm takes until its map is complete.
-fn doors_of(algorithm: MappingAlgorithm, graph: &EmbeddedGraph, facing: Dart) -> Vec<Door> {
-    let mut doors = Vec::new();
-    let mut watch = |_: &mut GraphWorld<'_>, _: &MapWalk, event: MappingEvent| {
-        if let MappingEvent::Moved { door, .. } = event {
-            doors.push(door);
-        }
+/// The world, the start, and the walks to compare with: the certificate, if there is one, and those of the algorithms
+/// that map with this marker.
+fn game(world: &NamedWorld, marker: &dyn Marker) -> Value {
+    let (graph, facing) = (&world.graph, facing_of(world));
+    let certificate = (marker == &Directional as &dyn Marker).then(|| {
+        let doors = folding::certificate(graph, facing);
+        walk("Certificate", &doors.into_iter().map(Action::Take).collect::<Vec<_>>(), true)
+    });
+    let algorithms =
+        MappingAlgorithm::ALL.iter().rev().filter(|algorithm| algorithm.marker() == marker);
+    let runs = algorithms.filter_map(|&algorithm| {
+        Some(walk(algorithm.info().title, &actions_of(algorithm, marker, graph, facing)?, false))
+    });
+    json!({
+        "name": world.name,
+        "world": graph_json(graph),
+        "start": dart_json(graph, facing),
+        "walks": certificate.into_iter().chain(runs).collect::<Vec<_>>(),
+    })
+}
+
+fn walk(name: &str, actions: &[Action], is_shortest: bool) -> Value {
+    let actions: Vec<_> = actions.iter().map(ToString::to_string).collect();
+    json!({ "name": name, "actions": actions, "isShortest": is_shortest })
+}
+
+/// The actions of an algorithm until its map is complete; `None` if its marker does not suffice.
+fn actions_of(
+    algorithm: MappingAlgorithm,
+    marker: &dyn Marker,
+    graph: &EmbeddedGraph,
+    facing: Dart,
+) -> Option<Vec<Action>> {
+    if marker.is_movable() && !graph.is_simple() {
+        return None;
+    }
+    let mut actions = Vec::new();
+    let mut watch = |_: &mut GraphWorld<'_, &dyn Marker>, _: &MapWalk, event: MappingEvent| {
+        actions.extend(event.action());
     };
-    let mut world = GraphWorld::new(graph, facing);
+    let mut world = GraphWorld::with_marker(graph, marker, facing);
     // No world that is a graph contradicts itself or has more darts.
     let _ = algorithm.map_world(&mut world, graph.dart_count(), &mut watch);
-    doors
+    Some(actions)
 }

@@ -1,0 +1,199 @@
+// The smallest world, other than the true one, in which a robot on the same walk perceives the same. Wherever the robot
+// comes to the end of a new edge, it may have come in by any open dart of a known place, or be at a new place: the search
+// tries all (depth-first), in worlds with one edge, with two edges, and so on (iterative deepening).
+
+/** The most darts that the search joins: about a second's work. */
+const SEARCH_STEPS = 400_000;
+/** The most new edges of a walk, for the stack. */
+const SEARCH_DEPTH = 1000;
+
+class WorldSearch {
+  /** `isTrue(graph)` says whether a complete graph, in which dart 0 is facing, is the true world. */
+  constructor(marker, percepts, actions, isTrue, steps = SEARCH_STEPS) {
+    Object.assign(this, { marker, percepts, actions, isTrue, steps });
+  }
+
+  /**
+   * The other world; `isSmallest` if no smaller one explains the walk. The world is null if none explains it
+   * (`isComplete`), or if the search reached its limit before it found one.
+   */
+  run() {
+    const all = this.steps;
+    // A first world of any size: new places are tried first.
+    this.steps = all / 2;
+    this.prefersSimple = false;
+    const any = this.find(Infinity);
+    if (any === null && !this.isOver()) return { world: null, isComplete: true };
+    this.steps = all;
+    this.prefersSimple = true;
+    for (let most = 1; any === null || 2 * most <= any.dartCount; most += 1) {
+      const world = this.find(most);
+      if (world !== null) return { world, isSmallest: true };
+      if (this.isOver()) return { world: any, isSmallest: false };
+      if (!this.isCut) return { world: null, isComplete: true };
+    }
+    return { world: any, isSmallest: true };
+  }
+
+  isOver() {
+    return this.steps <= 0;
+  }
+
+  /** A world with at most so many edges, if none has fewer, and a simple one if there is one; or null. */
+  find(most) {
+    this.most = most;
+    /** Whether a larger world may explain the walk. */
+    this.isCut = false;
+    this.depth = 0;
+    /** The first world that is found, while a simple one is searched. */
+    this.found = null;
+    this.graph = new Graph();
+    /** What the robot sensed at each vertex when it first came there. */
+    this.sensed = [];
+    if (!this.fitsSize(this.percepts[0].degree)) return null;
+    const pose = this.add(0);
+    return (this.fits(0, pose, pose) ? this.replay(0, pose, pose) : null) ?? this.found;
+  }
+
+  /** Adds the place where the robot is after so many actions, and returns its first dart. */
+  add(time) {
+    this.sensed.push(this.percepts[time].sighting);
+    return this.graph.add(this.percepts[time].degree);
+  }
+
+  /** Whether one more place with so many doors is possible. */
+  fitsSize(degree) {
+    const fits = this.graph.dartCount + degree <= 2 * this.most;
+    this.isCut ||= !fits;
+    return fits;
+  }
+
+  /** Whether the robot perceives in this state what it perceived. */
+  fits(time, pose, placed) {
+    const { degree, sighting } = this.percepts[time];
+    const { graph, marker } = this;
+    const fits = graph.degree(pose) === degree && sightings(marker, graph, placed, pose).includes(sighting);
+    return fits && (!["two-identical", "two-distinct"].includes(marker) || this.fitsTwo(placed, pose, sighting));
+  }
+
+  /** The second of two markers may lie behind a door that is open yet: all that was sensed is to fit one place of it. */
+  fitsTwo(placed, pose, sighting) {
+    const { graph, marker, sensed } = this;
+    if (sensed[graph.vertex(pose)] !== sighting) return false;
+    const others = sensed.filter((text, vertex) => text !== NOTHING && vertex !== graph.vertex(placed));
+    if (others.length > 1) return false;
+    if (graph.opposite(placed) === null) return true;
+    return graph.first.every((dart, vertex) => sightings(marker, graph, placed, dart).includes(sensed[vertex]));
+  }
+
+  /** Goes on with the walk after so many actions. */
+  replay(before, from, marked) {
+    let [time, pose, placed] = [before, from, marked];
+    while (time < this.actions.length) {
+      const action = this.actions[time];
+      if (isDoor(action)) {
+        const out = this.graph.turned(pose, Number(action));
+        const far = this.graph.opposite(out);
+        if (far === null) return this.arrive(time + 1, out, placed);
+        pose = far;
+      } else {
+        placed = action === DROP ? pose : null;
+      }
+      time += 1;
+      if (!this.fits(time, pose, placed)) return null;
+    }
+    return this.close();
+  }
+
+  /** The robot leaves by an open dart. */
+  arrive(time, out, placed) {
+    const { degree } = this.percepts[time];
+    if (this.depth === SEARCH_DEPTH) this.steps = 0;
+    const known = this.graph.open().filter((dart) => dart !== out && this.graph.degree(dart) === degree);
+    const visit = (dart) => {
+      if (this.isOver()) return null;
+      this.steps -= 1;
+      this.depth += 1;
+      this.graph.join(out, dart);
+      const found = this.fits(time, dart, placed) ? this.replay(time, dart, placed) : null;
+      this.graph.part(out, dart);
+      this.depth -= 1;
+      return found;
+    };
+    const visitNew = () => {
+      if (!this.fitsSize(degree)) return null;
+      const found = visit(this.add(time));
+      this.graph.removeLast();
+      this.sensed.pop();
+      return found;
+    };
+    const first = this.most === Infinity ? visitNew() : null;
+    const found = known.reduce((world, dart) => world ?? visit(dart), first);
+    return found ?? (this.most === Infinity ? null : visitNew());
+  }
+
+  /**
+   * Closes the open darts. With a number of pairs, each other open dart leads to a dead end. If that is the true world,
+   * two of them may lead to one place; or one leads over a place with two doors to a dead end.
+   */
+  close() {
+    const open = this.graph.open();
+    if (open.length > 0) this.isCut = true;
+    const base = (this.graph.dartCount - open.length) / 2 + open.length;
+    const exact = this.most === Infinity ? [...Array(open.length + 2).keys()].map((more) => base + 1 - more).reverse() : [this.most];
+    for (const edges of exact) {
+      for (const end of ["dead ends", "chain"]) {
+        const pairs = base - edges + (end === "chain" ? 1 : 0);
+        if (pairs < 0 || 2 * pairs > open.length) continue;
+        const found = this.joinPairs(open, pairs, (left) => this.closed(left, end));
+        if (found !== null) return found;
+      }
+    }
+    return null;
+  }
+
+  /** Joins so many pairs of open darts in every way, until `end(left)` returns a world for the darts that are left. */
+  joinPairs(open, pairs, end, left = []) {
+    if (pairs === 0) return end([...left, ...open]);
+    if (this.isOver() || open.length < 2 * pairs) return null;
+    const [first, ...others] = open;
+    for (const other of others) {
+      this.steps -= 1;
+      this.graph.join(first, other);
+      const rest = others.filter((dart) => dart !== other);
+      const found = this.joinPairs(rest, pairs - 1, end, left);
+      this.graph.part(first, other);
+      if (found !== null) return found;
+    }
+    return this.joinPairs(others, pairs, end, [...left, first]);
+  }
+
+  /** The world in which the open darts lead to dead ends, or one of them over a chain, if it explains the walk. */
+  closed(left, end) {
+    const ways = end === "chain" ? [1] : left.length > 1 ? [0, 2] : [0];
+    for (const way of ways) {
+      if (left.length < way) continue;
+      const world = this.graph.copy();
+      if (way > 0) {
+        const place = world.add(2);
+        world.join(left[0], place);
+        world.join(way === 2 ? left[1] : world.add(1), place + 1);
+      }
+      for (const dart of left.slice(way)) world.join(dart, world.add(1));
+      if (this.isTrue(world) || !this.explains(world)) continue;
+      if (!this.prefersSimple || world.isSimple()) return world;
+      this.found ??= world;
+    }
+    return null;
+  }
+
+  /** Whether a robot in a complete world perceives what it perceived. */
+  explains(world) {
+    const robot = new Robot(this.marker, world, 0);
+    return this.percepts.every(({ degree, sighting }, time) => {
+      if (time > 0) robot.act(this.actions[time - 1]);
+      const now = robot.percept();
+      return now.degree === degree && now.sighting === sighting;
+    });
+  }
+}

@@ -1,0 +1,49 @@
+// Runs the rules of the game on cases, without a browser.
+//
+//   node game.mjs SCRIPTS CASES
+//
+// SCRIPTS is the folder of the scripts. CASES has one JSON object a line, with the name of a rule in `rule`. The answer is
+// one line for each:
+//
+//   judge     `right` or the kind of fault of a map
+//   fold      the number of open doors of the folded trail of a walk with a directional marker
+//   sightings what the robot senses in each pose, as a list
+//   other     the smallest other world that explains a walk, as lists; or null
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+
+const [folder, cases] = process.argv.slice(2);
+const scripts = ["graph.js", "marker.js", "play_map.js", "play_judge.js", "play_search.js"];
+const source = scripts.map((name) => readFileSync(join(folder, name), "utf8")).join("\n");
+const names = "Graph, FoldedMap, WorldSearch, markerClaims, faultOf, sightings";
+const { Graph, FoldedMap, WorldSearch, markerClaims, faultOf, sightings } = new Function(`${source}\nreturn { ${names} };`)();
+
+const rules = {
+  judge({ map, pose, world, start, truth }) {
+    const graphs = [map, world].map(Graph.of);
+    const [at, facing, robot] = [graphs[0].dart(pose), graphs[1].dart(start), graphs[1].dart(truth)];
+    return faultOf(graphs[0], at, graphs[1], facing, robot)?.kind ?? "right";
+  },
+  fold({ percepts, actions }) {
+    const map = new FoldedMap("directional", percepts, actions, markerClaims(percepts));
+    return String(map.graph.open().length);
+  },
+  sightings({ marker, world, placed }) {
+    const graph = Graph.of(world);
+    const all = graph.far.map((_, pose) => sightings(marker, graph, graph.dart(placed), pose));
+    assert.ok(all.every((possible) => possible.length === 1));
+    return JSON.stringify(all.flat());
+  },
+  other({ marker, world, percepts, actions }) {
+    const truth = Graph.of(world);
+    const search = new WorldSearch(marker, percepts, actions, (graph) => faultOf(graph, 0, truth, 0, 0) === null);
+    const found = search.run();
+    assert.ok(found.isSmallest || found.isComplete, "the search reached its limit");
+    return JSON.stringify(found.world?.lists() ?? null);
+  },
+};
+
+const lines = readFileSync(cases, "utf8").trimEnd().split("\n").map((line) => JSON.parse(line));
+process.stdout.write(lines.map((line) => `${rules[line.rule](line)}\n`).join(""));

@@ -1,0 +1,244 @@
+//! The rules of the game, which the page of `play` applies in the browser, against those of the specification: the judge,
+//! folding, the sightings of each marker, and the smallest other world that explains a walk, against trying them all.
+//! Sections 2.1 to 2.3.
+
+use std::{borrow::Cow, fmt::Write as _, fs};
+
+use serde_json::{Value, json};
+use toposlam_model::{
+    check::judge_map,
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Each, Enumeration},
+    folding::fold,
+    isomorphism::{Candidate, as_discovered},
+    mapping::{ExploredMap, Flaw},
+    marker::{Directional, MARKERS, Marker},
+    percept::{Door, Percept},
+    world::{Action, GraphWorld},
+};
+
+use crate::{browser, output, repository};
+
+/// Every start with these numbers of edges.
+fn starts(edges: std::ops::RangeInclusive<usize>) -> Vec<EmbeddedGraph> {
+    let all = |edges| Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap().graphs();
+    edges.flat_map(all).collect()
+}
+
+fn end(graph: &EmbeddedGraph, dart: Dart) -> Value {
+    json!([graph.vertex(dart).at(), graph.index(dart)])
+}
+
+fn lists(graph: &EmbeddedGraph) -> Value {
+    let ends = |vertex| graph.darts_of(vertex).map(|dart| end(graph, graph.opposite(dart)));
+    graph.vertices().map(|vertex| ends(vertex).collect::<Value>()).collect()
+}
+
+/// What the page answers to each case; `None` if there is no Node.
+fn answers(name: &str, cases: &[Value]) -> Option<Vec<String>> {
+    let mut lines = String::new();
+    for case in cases {
+        writeln!(lines, "{case}").unwrap();
+    }
+    let file = output::folder("game-rules").join(name);
+    fs::write(&file, lines).unwrap();
+    let scripts = repository("draw/src/page/browser");
+    let printed = browser::run_in_node("game.mjs", &[scripts.as_os_str(), file.as_os_str()])?;
+    let answers: Vec<_> = printed.lines().map(str::to_owned).collect();
+    assert_eq!(answers.len(), cases.len());
+    Some(answers)
+}
+
+/// A walk of a robot from the start of a world.
+struct Walk {
+    percepts: Vec<Percept>,
+    actions: Vec<Action>,
+}
+
+impl Walk {
+    /// Random actions; the same random numbers for the same seed.
+    fn random(graph: &EmbeddedGraph, marker: &dyn Marker, length: usize, seed: &mut u32) -> Self {
+        let mut world = GraphWorld::with_marker(graph, marker, Dart(0));
+        let mut walk = Self { percepts: vec![world.sensed()], actions: Vec::new() };
+        for _ in 0..length {
+            *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let possible: Vec<_> = world.actions().collect();
+            let action = possible[(*seed >> 16) as usize % possible.len()];
+            world.act(action).unwrap();
+            walk.actions.push(action);
+            walk.percepts.push(world.sensed());
+        }
+        walk
+    }
+
+    /// Whether a robot perceives the same from the start of a world.
+    fn is_explained_by(&self, graph: &EmbeddedGraph, marker: &dyn Marker) -> bool {
+        let mut world = GraphWorld::with_marker(graph, marker, Dart(0));
+        world.sensed() == self.percepts[0]
+            && self
+                .actions
+                .iter()
+                .zip(&self.percepts[1..])
+                .all(|(&action, percept)| world.act(action).is_ok() && world.sensed() == *percept)
+    }
+
+    fn json(&self) -> [Value; 2] {
+        let percept =
+            |percept: &Percept| json!({ "degree": percept.degree, "sighting": percept.sighting });
+        let percepts = self.percepts.iter().map(percept).collect();
+        [percepts, self.actions.iter().map(|action| json!(action.to_string())).collect()]
+    }
+
+    fn doors(&self) -> Vec<Door> {
+        let door = |action: &Action| match action {
+            Action::Take(door) => *door,
+            other => panic!("{other} is not a door"),
+        };
+        self.actions.iter().map(door).collect()
+    }
+}
+
+/// Every start as a map of every other one, with the robot anywhere on the map.
+#[test]
+fn the_judge_of_the_game_agrees_with_the_specification() {
+    let starts = starts(1..=3);
+    assert_eq!(starts.len(), 2 + 10 + 74);
+    let (mut cases, mut expected) = (Vec::new(), Vec::new());
+    let mut candidate = Candidate::default();
+    for (number, world) in starts.iter().enumerate() {
+        let truth = Dart((number % world.dart_count()) as u32);
+        for map in &starts {
+            for pose in map.darts() {
+                cases.push(json!({
+                    "rule": "judge", "map": lists(map), "pose": end(map, pose),
+                    "world": lists(world), "start": end(world, Dart(0)), "truth": end(world, truth),
+                }));
+                let map = ExploredMap { graph: Cow::Borrowed(map), facing: Dart(0), pose };
+                expected.push(match judge_map(&map, (world, Dart(0)), truth, &mut candidate) {
+                    Ok(_) => "right",
+                    Err(Flaw::WrongPose { .. }) => "pose",
+                    Err(_) => "map",
+                });
+            }
+        }
+    }
+    let Some(answers) = answers("maps.jsonl", &cases) else { return };
+    for (case, (answer, expected)) in answers.iter().zip(expected).enumerate() {
+        let found = if ["right", "pose"].contains(&&**answer) { answer } else { "map" };
+        assert_eq!(found, expected, "case {case}: {answer}");
+    }
+    for kind in ["right", "pose", "degree", "several", "twice"] {
+        assert!(answers.iter().any(|answer| answer == kind), "no map is {kind}");
+    }
+}
+
+#[test]
+fn the_folded_trails_of_the_game_have_the_same_open_doors() {
+    let (mut cases, mut expected, mut seed) = (Vec::new(), Vec::new(), 1);
+    for graph in starts(1..=3) {
+        for length in 1..=9 {
+            let walk = Walk::random(&graph, &Directional, length, &mut seed);
+            let open = fold(&walk.percepts, &walk.doors()).unwrap().open_darts().count();
+            let [percepts, actions] = walk.json();
+            cases.push(json!({ "rule": "fold", "percepts": percepts, "actions": actions }));
+            expected.push(open.to_string());
+        }
+    }
+    let Some(answers) = answers("walks.jsonl", &cases) else { return };
+    assert_eq!(answers, expected);
+    assert!(expected.iter().any(|open| open == "0") && expected.iter().any(|open| open != "0"));
+}
+
+/// Every marker in every pose of every start with up to 4 edges, placed by each dart.
+#[test]
+fn the_sightings_of_each_marker_are_those_of_the_specification() {
+    let (mut cases, mut expected) = (Vec::new(), Vec::new());
+    for graph in starts(1..=4) {
+        for marker in MARKERS {
+            for placed in graph.darts().step_by(3) {
+                let sighting = |pose| json!(marker.sighting(&graph, placed, pose));
+                expected.push(graph.darts().map(sighting).collect::<Value>().to_string());
+                cases.push(json!({
+                    "rule": "sightings", "marker": marker.name(),
+                    "world": lists(&graph), "placed": end(&graph, placed),
+                }));
+            }
+        }
+    }
+    let Some(answers) = answers("sightings.jsonl", &cases) else { return };
+    assert_eq!(answers, expected);
+}
+
+/// The largest number of edges for which all starts are tried.
+const TRIED: usize = 4;
+
+/// The world has up to 3 edges. With up to 4 edges, there is another one exactly if the page finds it, and it has as many
+/// edges.
+#[test]
+fn the_other_world_of_the_game_is_as_small_as_trying_all_finds() {
+    let all = starts(1..=TRIED);
+    let (mut cases, mut walks, mut seed) = (Vec::new(), Vec::new(), 7);
+    for marker in MARKERS {
+        for truth in starts(1..=3) {
+            for length in [1, 3, 6, 10, 20] {
+                let walk = Walk::random(&truth, marker, length, &mut seed);
+                let [percepts, actions] = walk.json();
+                cases.push(json!({
+                    "rule": "other", "marker": marker.name(), "world": lists(&truth),
+                    "percepts": percepts, "actions": actions,
+                }));
+                walks.push((marker, truth.clone(), walk));
+            }
+        }
+    }
+    let Some(answers) = answers("others.jsonl", &cases) else { return };
+    let mut sizes = [0; TRIED + 1];
+    let (mut none, mut larger) = (0, 0);
+    for ((marker, truth, walk), answer) in walks.iter().zip(answers) {
+        let is_other =
+            |graph: &&EmbeddedGraph| *graph != truth && walk.is_explained_by(graph, *marker);
+        let least = all.iter().find(is_other).map(EmbeddedGraph::edge_count);
+        let answer: Option<Vec<Vec<(usize, u32)>>> = serde_json::from_str(&answer).unwrap();
+        let Some(found) = answer else {
+            assert_eq!(least, None, "{} {truth:?} {:?}", marker.name(), walk.actions);
+            none += 1;
+            continue;
+        };
+        let graph = as_discovered(&graph_of(&found), Dart(0));
+        assert!(is_other(&&graph), "{} {truth:?} {:?}: {graph:?}", marker.name(), walk.actions);
+        let edges = Some(graph.edge_count());
+        assert_eq!(
+            edges.filter(|&edges| edges <= TRIED),
+            least,
+            "{} {truth:?} {:?}",
+            marker.name(),
+            walk.actions
+        );
+        match least {
+            Some(edges) => sizes[edges] += 1,
+            None => larger += 1,
+        }
+    }
+    assert!(
+        none > 100 && larger > 0 && sizes[1..].iter().all(|&count| count > 10),
+        "{none} {larger} {sizes:?}"
+    );
+}
+
+/// The graph of the lists of a page: dart 0 is its first.
+fn graph_of(lists: &[Vec<(usize, u32)>]) -> EmbeddedGraph {
+    let mut first = vec![0];
+    for ends in lists {
+        first.push(first[first.len() - 1] + ends.len() as u32);
+    }
+    let opposite: Vec<u32> =
+        lists.iter().flatten().map(|&(vertex, index)| first[vertex] + index).collect();
+    let next = |(vertex, ends): (usize, &Vec<_>)| {
+        let (first, degree) = (first[vertex], ends.len() as u32);
+        (0..degree).map(move |index| first + (index + 1) % degree)
+    };
+    let clockwise: Vec<u32> = lists.iter().enumerate().flat_map(next).collect();
+    let (graph, number) = EmbeddedGraph::from_permutations(&opposite, &clockwise).unwrap();
+    assert_eq!(number[0], Dart(0));
+    graph
+}
