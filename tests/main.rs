@@ -9,7 +9,6 @@ mod command_line;
 mod conform_page;
 mod docs;
 mod fuzz;
-mod game;
 mod oracle;
 mod output;
 mod pages;
@@ -17,6 +16,7 @@ mod paper;
 #[allow(dead_code, reason = "other programs use the rest")]
 mod process;
 mod schema;
+mod scripts;
 
 use std::{
     fs,

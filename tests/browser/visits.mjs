@@ -7,6 +7,8 @@
 // With the variable PICTURES, screenshots go to that folder.
 
 import assert from "node:assert/strict";
+import { createRequire } from "node:module";
+import { readFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -51,6 +53,85 @@ export async function assertNamesReadable(page, selectors) {
   await page.setViewportSize(before);
 }
 
+const AXE = createRequire(import.meta.url).resolve("axe-core");
+
+/**
+ * Checks a page at the sizes of a computer and of a phone, in light and dark: by axe-core, which finds low contrast among
+ * other faults; that no word of a table's head is broken; and that the bar that stays on the screen covers no percept
+ * while the page is at its top.
+ */
+async function assertReadable(page, file, when) {
+  const [size, scroll] = [page.viewportSize(), await page.evaluate(() => [scrollX, scrollY])];
+  if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(readFileSync(AXE, "utf8"));
+  for (const viewport of [LAPTOP, READER]) {
+    for (const colorScheme of ["light", "dark"]) {
+      await page.setViewportSize(viewport);
+      await page.emulateMedia({ colorScheme });
+      await page.evaluate(() => scrollTo(0, 0));
+      await page.waitForTimeout(100);
+      const place = `at the ${when}, ${colorScheme}, ${viewport.width} wide`;
+      await photograph(page, file, `${when}-${colorScheme}-${viewport.width}`);
+      assert.deepEqual(await page.evaluate(faultsOfAxe), [], place);
+      assert.deepEqual(await page.evaluate(brokenHeads), [], place);
+      assert.deepEqual(await page.evaluate(faintButtons), [], place);
+      assert.deepEqual(await page.evaluate(covered), [], place);
+    }
+  }
+  await page.emulateMedia({ colorScheme: "light" });
+  await page.setViewportSize(size);
+  await page.evaluate(([x, y]) => scrollTo(x, y), scroll);
+}
+
+async function faultsOfAxe() {
+  const { violations } = await globalThis.axe.run(document, { resultTypes: ["violations"] });
+  return violations.flatMap(({ id, nodes }) => nodes.map(({ target, any }) => `${id}: ${target} ${any[0]?.message ?? ""}`));
+}
+
+/** The words in the heads of tables that stand on several lines. */
+function brokenHeads() {
+  return [...document.querySelectorAll("thead th:not(.unseen, .unseen *)")].flatMap((head) => {
+    const texts = document.createTreeWalker(head, NodeFilter.SHOW_TEXT);
+    const broken = [];
+    while (texts.nextNode()) {
+      const { data, parentElement } = texts.currentNode;
+      if (parentElement.closest(".unseen")) continue;
+      for (const { 0: word, index } of data.matchAll(/\w+/g)) {
+        const range = document.createRange();
+        range.setStart(texts.currentNode, index);
+        range.setEnd(texts.currentNode, index + word.length);
+        if (new Set([...range.getClientRects()].map(({ top }) => Math.round(top))).size > 1) broken.push(word);
+      }
+    }
+    return broken;
+  });
+}
+
+/** The buttons whose text has a contrast below 4.5: axe-core skips those that are disabled. */
+function faintButtons() {
+  const luminance = (color) => {
+    const parts = color.match(/[\d.]+/g).slice(0, 3).map((part) => part / 255);
+    const [r, g, b] = parts.map((part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const contrast = (button) => {
+    const { color, backgroundColor } = getComputedStyle(button);
+    const [dark, light] = [color, backgroundColor].map(luminance).sort((one, two) => one - two);
+    return (light + 0.05) / (dark + 0.05);
+  };
+  const faint = [...document.querySelectorAll("button")].filter((button) => contrast(button) < 4.5);
+  return faint.map((button) => `${button.textContent}: ${contrast(button)}`);
+}
+
+/** The percepts, as far as they are on the screen, that the bar covers. */
+function covered() {
+  const bar = document.querySelector(".controls")?.getBoundingClientRect();
+  const percepts = [...document.querySelectorAll("figure .percept")].filter((percept) => {
+    const { top, bottom, height } = percept.getBoundingClientRect();
+    return bar && height > 0 && top < bar.bottom && bottom > bar.top + 1;
+  });
+  return percepts.map(({ textContent }) => textContent);
+}
+
 export async function photograph(page, file, name) {
   if (!process.env.PICTURES) return;
   const path = join(process.env.PICTURES, `${basename(file, ".html")}-${name}.png`);
@@ -72,7 +153,9 @@ async function inItsOwnWindow(browser, kind, file, visit) {
     }
   });
   await page.goto(url);
+  await assertReadable(page, file, "begin");
   const found = await visit(page, kind, file);
+  await assertReadable(page, file, "end");
   assert.deepEqual(faults, []);
   await context.close();
   return found;

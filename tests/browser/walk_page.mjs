@@ -5,7 +5,7 @@
 // alike: no walk distinguishes the two worlds of the page; apart: the page has one that does.
 
 import assert from "node:assert/strict";
-import { DESK, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
+import { DESK, assertFitsPhone, photograph, seeded, visitAll } from "./visits.mjs";
 
 const DOORS = 50;
 
@@ -33,34 +33,35 @@ function shown(page) {
   });
 }
 
-function readData(page) {
-  return page.evaluate(() => JSON.parse(document.querySelector("#data").textContent));
-}
+const readData = (page) => page.evaluate(() => JSON.parse(document.querySelector("#data").textContent));
 
-const starts = (data) => data.sides.map((side) => side.states[side.start]);
-const after = (data, states, action) =>
-  states.map(({ actions }, side) => {
-    const [, to] = actions.find(([known]) => known === action);
-    return data.sides[side].states[to];
+/** The poses of both robots, each a vertex and an index. */
+const starts = ({ sides, pose }) => [sides[0].facing, pose];
+const after = ({ sides }, poses, door) =>
+  poses.map(([v, i], side) => {
+    const ends = sides[side].world[v];
+    return ends[(i + Number(door)) % ends.length];
   });
+const text = ({ sides }, poses) => poses.map(([v, i], side) => `${sides[side].vertices[v]}:${i}`);
+const degrees = ({ sides }, poses) => poses.map(([v], side) => sides[side].world[v].length);
 
-/** The newest row is that of the data, and equal columns look equal. */
-function assertShows(now, states, step, action) {
-  const [a, b] = states.map(({ percept }) => percept);
+/** The newest row is that of this step, and equal columns look equal. */
+function assertShows(now, step, action) {
   const { cells, differs } = now.rows.at(-1);
-  assert.deepEqual(cells, [String(step), action, a, a === b ? "=" : "≠", b]);
-  assert.equal(differs, a !== b);
-  assert.deepEqual(now.lit, [a !== b, a !== b]);
-  assert.deepEqual(now.states, states.map(({ text }) => text));
+  assert.deepEqual(cells.slice(0, 2), [String(step), action]);
+  const isEqual = cells[2] === cells[4];
+  assert.equal(cells[3], isEqual ? "=" : "≠");
+  assert.equal(differs, !isEqual);
+  assert.deepEqual(now.lit, [!isEqual, !isEqual]);
 }
 
 /** Random doors, clicked in the one and the other picture and by keys: always equal percepts. */
 async function walkAlike(page) {
   const data = await readData(page);
-  assert.ok(data.relation, "the page has no relation");
+  assert.equal(await page.locator(".relation").isVisible(), true);
   assert.equal(await page.locator("#distinguish").isVisible(), false);
   const random = seeded(1);
-  let states = starts(data);
+  let poses = starts(data);
   for (let step = 1; step <= DOORS; step += 1) {
     const { doors } = await shown(page);
     assert.deepEqual([...doors[0]].sort(), [...doors[1]].sort());
@@ -71,18 +72,62 @@ async function walkAlike(page) {
     } else {
       await page.keyboard.press(action);
     }
-    states = after(data, states, action);
+    poses = after(data, poses, action);
     const now = await shown(page);
     assert.equal(now.rows.length, step + 1);
-    assertShows(now, states, step, action);
+    assertShows(now, step, action);
+    assert.deepEqual(now.states, text(data, poses));
+    const [a, b] = degrees(data, poses);
+    assert.deepEqual([now.rows.at(-1).cells[2].split(" ")[0], a], [String(a), b]);
     const equal = now.rows.every(({ cells }) => cells[2] === cells[4]);
     assert.ok(equal, `the columns of percepts are no longer equal after ${step} doors`);
     assert.equal(now.current, 1);
-    assert.equal(now.pair, states.map(({ text }) => text).join(" ~ "));
+    assert.equal(now.pair, text(data, poses).join(" ~ "));
   }
   const walked = await shown(page);
-  assert.ok(walked.met > 10 && walked.met <= data.relation.length, `${walked.met} pairs met`);
+  const pairs = await page.locator(".pairs li").count();
+  assert.ok(walked.met > 10 && walked.met <= pairs, `${walked.met} of ${pairs} pairs met`);
   return { doors: DOORS, pairs: walked.met };
+}
+
+/**
+ * The reader chooses a directional marker, hides the worlds, and finds the shortest walk that distinguishes those of
+ * figure 1: the doors 0, 1, 1.
+ */
+async function chooseAndFind(page, file) {
+  const about = () => page.locator(".about").textContent();
+  assert.match(await about(), /^One undirected marker .* no walk distinguishes these worlds/);
+  await page.locator("#marker").selectOption("directional");
+  assert.match(await about(), /^One directional marker .* the walk 0, 1, 1 distinguishes these worlds\.$/);
+  assert.equal(await page.locator(".relation").isVisible(), false);
+  assert.equal((await shown(page)).rows.length, 1);
+  assert.equal(await page.locator(".world .mark").count(), 2);
+  await photograph(page, file, "directional");
+  await page.getByRole("button", { name: "Hide the worlds" }).click();
+  assert.match(await about(), /Find one, or show the worlds\.$/);
+  for (const hidden of [".world svg", ".marker-place", "#distinguish", ".state"]) {
+    assert.equal(await page.locator(hidden).first().isVisible(), false, hidden);
+  }
+  assert.equal(await page.locator(".world .percept").first().textContent(), "4 doors, marker along door 0");
+  for (const door of ["0", "1", "1"]) await page.keyboard.press(door);
+  assert.match((await shown(page)).status, /You have distinguished the worlds in 3 steps\. The shortest walk .* has 3 of them\.$/);
+  await photograph(page, file, "blind");
+  await page.keyboard.press("h");
+  assert.equal(await page.locator(".world svg").first().isVisible(), true);
+  assert.match((await shown(page)).status, /they differ\. A: .*; B: [^.]*\.$/);
+  for (const marker of ["none", "undirected-edge", "directed-edge", "two-identical", "two-distinct", "movable"]) {
+    await page.locator("#marker").selectOption(marker);
+    await photograph(page, file, marker);
+  }
+  // The robots carry the marker from the hub to the rim.
+  await page.getByRole("button", { name: "pick-up" }).click();
+  assert.equal(await page.locator(".world .carrying").count(), 2);
+  assert.equal(await page.locator(".marker-place").first().textContent(), "The robot carries the marker.");
+  await page.locator("main").click({ position: { x: 2, y: 2 } });
+  await page.keyboard.press("0");
+  await page.keyboard.press("d");
+  assert.deepEqual((await shown(page)).states, ["a:1@a", "A:1@A"]);
+  await page.locator("#marker").selectOption("undirected");
 }
 
 /** Undo, restart, a random walk, and doors by the buttons, all without a pointer. */
@@ -112,35 +157,30 @@ async function walkByKeyboard(page) {
 
 /** The walk that distinguishes the worlds: equal percepts up to its end, different ones there. */
 async function tellApart(page) {
-  const data = await readData(page);
-  assert.ok(data.walk, "the page has no walk that distinguishes the worlds");
+  const [, listed] = (await page.locator(".about").textContent()).match(/ the walk (.*) distinguishes these worlds\.$/);
+  const walk = listed.split(", ");
   await page.getByRole("button", { name: "Play the walk that distinguishes them" }).click();
   const rows = page.locator(".percepts tbody tr");
-  await rows.nth(data.walk.length).waitFor({ timeout: 5000 + 2000 * data.walk.length });
+  await rows.nth(walk.length).waitFor({ timeout: 5000 + 2000 * walk.length });
   const now = await shown(page);
-  assert.equal(now.rows.length, data.walk.length + 1);
-  assert.deepEqual(now.rows.slice(1).map(({ cells }) => cells[1]), data.walk);
-  const states = data.walk.reduce((states, action) => after(data, states, action), starts(data));
-  assertShows(now, states, data.walk.length, data.walk.at(-1) ?? "start");
+  assert.equal(now.rows.length, walk.length + 1);
+  assert.deepEqual(now.rows.slice(1).map(({ cells }) => cells[1]), walk);
+  assertShows(now, walk.length, walk.at(-1));
   for (const [step, { cells, differs }] of now.rows.entries()) {
-    const last = step === data.walk.length;
+    const last = step === walk.length;
     assert.equal(cells[2] !== cells[4], last, `step ${step}: ${cells}`);
     assert.equal(differs, last);
   }
   assert.match(now.status, /differ/);
-  const alone = states.flatMap(({ actions }, side) => {
-    const others = states[1 - side].actions.map(([action]) => action);
-    return actions.map(([action]) => action).filter((action) => !others.includes(action));
-  });
-  for (const action of alone) {
-    const name = /^\d+$/.test(action) ? `door ${action}` : action;
+  const alone = now.doors.flatMap((doors, side) => doors.filter((door) => !now.doors[1 - side].includes(door)));
+  for (const door of alone) {
     // It is marked as disabled, and gives the reason when it is pressed.
-    await page.getByRole("button", { name, exact: true }).click({ force: true });
+    await page.getByRole("button", { name: `door ${door}`, exact: true }).click({ force: true });
     const after = await shown(page);
     assert.equal(after.rows.length, now.rows.length);
     assert.match(after.status, /^Only [AB] /);
   }
-  return { walk: data.walk.join(" ") };
+  return { walk: walk.join(" ") };
 }
 
 /** Nothing to scroll sideways on a phone, and doors that a finger hits. */
@@ -167,7 +207,10 @@ async function visit(page, kind, file) {
   await photograph(page, file, "phone");
   await page.setViewportSize(DESK);
   await page.emulateMedia({ reducedMotion: "no-preference" });
-  if (kind === "alike") await walkByKeyboard(page);
+  if (kind === "alike") {
+    await chooseAndFind(page, file);
+    await walkByKeyboard(page);
+  }
   return found;
 }
 

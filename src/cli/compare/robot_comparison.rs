@@ -18,7 +18,7 @@ use toposlam_model::{
 use super::{CliError, walk_page};
 use crate::{
     cli::text::{counted, grouped, print_columns, print_hanging, print_paragraph},
-    page::MOST_PAIRS,
+    page::{MOST_PAIRS, WalkPage},
 };
 
 /// How many starts in B, pairs of states, and classes of states are printed.
@@ -128,7 +128,12 @@ impl<'w> RobotComparison<'w> {
 
     /// Writes the page on which a person walks both worlds.
     pub(super) fn write_page(&self, path: &Path) -> Result<(), CliError> {
-        walk_page::write(path, self.worlds, self.marker, &self.comparison, self.poses())
+        let [start, pose] = self.poses();
+        let facings = [start, self.worlds[1].start.unwrap_or(Dart(0))];
+        walk_page::write(
+            path,
+            &WalkPage { worlds: self.worlds, facings, pose, marker: self.marker },
+        )
     }
 
     /// These starts, as `vertex:facing`.

@@ -9,7 +9,10 @@ use toposlam_model::{
     marker::Marker,
 };
 
-use crate::cli::{CliError, Outcome, output, terminal, walk_page};
+use crate::{
+    cli::{CliError, Outcome, output, terminal, walk_page},
+    page::WalkPage,
+};
 
 /// The reported pairs, and each of their worlds once.
 pub(super) struct WorldPairs {
@@ -70,8 +73,8 @@ impl WorldPairs {
         };
         let start = PlacedWorld::FACING;
         let comparison = Comparison::new(marker, (&one.graph, start), (&other.graph, start));
-        let poses = [start, comparison.start_like(start).unwrap_or(start)];
-        walk_page::write(path, worlds, marker, &comparison, poses)
+        let pose = comparison.start_like(start).unwrap_or(start);
+        walk_page::write(path, &WalkPage { worlds, facings: [start, start], pose, marker })
     }
 
     /// Writes each world into a file that has its name.

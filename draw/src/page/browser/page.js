@@ -10,7 +10,6 @@ function drawn(name, attributes = {}, ...children) {
   return element;
 }
 
-
 /** Shows and announces what happened. */
 function say(text) {
   find(".status").textContent = text;
@@ -52,6 +51,21 @@ function keepReadable(svg, size = nameSize(svg)) {
   const { width, height } = svg.viewBox.baseVal;
   svg.style.setProperty("--readable", `${(width * READABLE) / size}px`);
   svg.style.setProperty("--readable-height", `${(height * READABLE) / size}px`);
+}
+
+/** Crops a picture of a world to its drawing: the page has the texts, and a phone has little room. */
+function crop(svg) {
+  for (const element of svg.querySelectorAll(".title, .caption, .legend, .scale, .names ~ .marker")) element.remove();
+  const boxes = [...svg.querySelectorAll(".vertex, .edge, .hallway, .names")].map((element) => element.getBBox());
+  const [left, top] = ["x", "y"].map((side) => Math.min(...boxes.map((box) => box[side])));
+  const width = Math.max(...boxes.map((box) => box.x + box.width)) - left;
+  const height = Math.max(...boxes.map((box) => box.y + box.height)) - top;
+  // Room around a disc for the ring of a marker and the numbers of doors.
+  const room = 16;
+  const box = [left - room, top - room, width + 2 * room, height + 2 * room];
+  svg.setAttribute("viewBox", box.join(" "));
+  svg.setAttribute("width", box[2]);
+  svg.setAttribute("height", box[3]);
 }
 
 /** Scrolls a box, and nothing else, so that an element is in the middle of it. */

@@ -1,12 +1,15 @@
 // One world: its picture, the robot in it, the marker, and the doors as this robot counts them.
 
-const isDoor = (action) => /^\d+$/.test(action);
 const direction = (from, to) => Math.atan2(to.y - from.y, to.x - from.x);
 const distance = (from, to) => Math.hypot(to.x - from.x, to.y - from.y);
 const beyond = (from, angle, length) => ({
   x: from.x + length * Math.cos(angle),
   y: from.y + length * Math.sin(angle),
 });
+
+/** The signs of a marker on an edge, of size 1, in the direction of x. */
+const ARROW = "M1 0L-0.8 0.7L-0.8 -0.7Z";
+const BAR = "M-0.3 -1H0.3V1H-0.3Z";
 
 class Panel {
   /** `onDoor` is called with the number of a door that is clicked in the picture. */
@@ -15,10 +18,10 @@ class Panel {
     this.onDoor = onDoor;
     this.svg = figure.querySelector("svg");
     // The title would pop up under the pointer.
-    const title = this.svg.querySelector("title");
-    this.svg.setAttribute("aria-label", title?.textContent ?? "");
-    title?.remove();
-    this.crop();
+    this.svg.querySelector("title")?.remove();
+    this.svg.setAttribute("aria-label", figure.querySelector("figcaption .name").textContent);
+    crop(this.svg);
+    keepReadable(this.svg);
 
     this.discs = new Map();
     for (const disc of this.svg.querySelectorAll("circle.vertex")) {
@@ -46,28 +49,11 @@ class Panel {
       drawn("path", { d: "M1.5 0L0.62 0.78A1 1 0 1 1 0.62 -0.78Z" }),
     );
     this.svg.querySelector("circle.vertex")?.before(this.halos);
+    this.marks = drawn("g");
     const names = this.svg.querySelector(".names");
-    names.before(this.robot);
+    names.before(this.marks, this.robot);
     this.svg.append(this.doors);
     new ResizeObserver(() => this.state && this.draw()).observe(this.svg);
-  }
-
-  /** Crops to the drawing: the page has the texts, and a phone has little room. */
-  crop() {
-    const rest = ".title, .caption, .legend, .scale, .names ~ .marker";
-    for (const element of this.svg.querySelectorAll(rest)) element.remove();
-    const drawing = [...this.svg.querySelectorAll(".vertex, .edge, .hallway, .names")];
-    const boxes = drawing.map((element) => element.getBBox());
-    const [left, top] = ["x", "y"].map((side) => Math.min(...boxes.map((box) => box[side])));
-    const width = Math.max(...boxes.map((box) => box.x + box.width)) - left;
-    const height = Math.max(...boxes.map((box) => box.y + box.height)) - top;
-    // Room around a disc for the ring of a marker and the numbers of doors.
-    const room = 16;
-    const box = [left - room, top - room, width + 2 * room, height + 2 * room];
-    this.svg.setAttribute("viewBox", box.join(" "));
-    this.svg.setAttribute("width", box[2]);
-    this.svg.setAttribute("height", box[3]);
-    keepReadable(this.svg);
   }
 
   /** How many units of the picture a pixel of the screen is. */
@@ -91,7 +77,7 @@ class Panel {
 
   draw() {
     const { state } = this;
-    this.robot.classList.toggle("carrying", state.marker === "carried");
+    this.robot.classList.toggle("carrying", state.robot.carries);
     const disc = this.discs.get(state.vertex);
     this.place(disc, direction(this.end(state.dart), disc));
     this.drawMarker();
@@ -134,14 +120,30 @@ class Panel {
     step(begun);
   }
 
-  /** A ring around the vertex where a movable marker lies; another marker stands in the picture. */
+  /** The marker: rings around vertices, an arrow at a door, or a mark in the middle of an edge. */
   drawMarker() {
-    this.halos.replaceChildren();
-    const { marker } = this.state;
-    if (marker === null || marker === "carried") return;
-    const { x, y, r } = this.discs.get(marker);
-    const radius = r + Math.max(this.knob + 4, 3 * this.pixel);
-    this.halos.append(drawn("circle", { class: "mark-disc", cx: x, cy: y, r: radius }));
+    const signs = this.state.parts.map(({ dart, drawn: kind }, nth) => {
+      const disc = this.discs.get(this.state.robot.graph.vertex(dart));
+      const size = Math.max(this.knob + 4, 7 * this.pixel);
+      if (kind === "lying" || kind === "second") {
+        const radius = disc.r + Math.max(this.knob + 4, 3 * this.pixel) + 4 * nth * this.pixel;
+        return drawn("circle", { class: `mark-disc ${kind}`, cx: disc.x, cy: disc.y, r: radius });
+      }
+      const { path, backward } = this.ways.get(dart);
+      const length = path.getTotalLength();
+      const at = (away) => path.getPointAtLength(backward ? away : length - away);
+      const [place, before] = kind === "pointing" ? [1.7 * size, size] : [length / 2, length / 2 - 1];
+      const turn = direction(at(before), at(place));
+      return this.sign(at(place), turn, size, kind === "edge" ? BAR : ARROW);
+    });
+    this.halos.replaceChildren(...signs.filter(({ tagName }) => tagName === "circle"));
+    this.marks.replaceChildren(...signs.filter(({ tagName }) => tagName !== "circle"));
+  }
+
+  /** A sign on an edge. */
+  sign({ x, y }, turn, size, shape) {
+    const place = `translate(${x} ${y}) rotate(${(turn * 180) / Math.PI}) scale(${size})`;
+    return drawn("path", { class: "mark", d: shape, transform: place });
   }
 
   /** The doors of the vertex with the robot's own numbers, large enough for a finger. */
@@ -172,7 +174,7 @@ class Panel {
       const door = drawn("g", { "data-action": action }, circle("badge", at, radius), number);
       door.classList.toggle("alone", !this.shared(action));
       // Its number may cover the marker that points along it.
-      door.classList.toggle("marked", dart === state.pointing);
+      door.classList.toggle("marked", state.parts.some((part) => part.dart === dart && part.drawn === "pointing"));
       group.append(door);
     }
     // A finger covers several doors: choose the nearest.

@@ -189,8 +189,8 @@ function finish() {
   compare(fault === null);
   find(".solution .ground").replaceChildren(game.picture.content.cloneNode(true));
   write(".solution .name", game.name);
-  keepReadable(find(".solution svg"));
   find(".result").hidden = false;
+  showWorld();
   find(".doors").hidden = true;
   showOther(other);
   show();
@@ -233,6 +233,16 @@ function faultText({ kind, vertex, degree, vertices }) {
     return `Your map is not the world: ${one} and ${other} are one place of the world.`;
   }
   return "Your map is the world, but the robot is not where you believe it to be.";
+}
+
+/** Crops the picture of the world, so that the numbers of its doors are readable. */
+function showWorld() {
+  const svg = find(".solution svg");
+  crop(svg);
+  svg.querySelector("title")?.remove();
+  svg.setAttribute("aria-label", `The world ${game.name}`);
+  const sizes = [...svg.querySelectorAll("text")].map((text) => parseFloat(getComputedStyle(text).fontSize));
+  keepReadable(svg, Math.min(...sizes));
 }
 
 /** Draws the other world, with the robot and the marker as they are at the end of the walk. */

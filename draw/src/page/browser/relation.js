@@ -11,12 +11,13 @@ class Relation {
     this.list = section.querySelector(".pairs");
     this.index = new Map(pairs.map(([a, b], at) => [`${a} ${b}`, at]));
     this.visits = new Map();
+    this.current = undefined;
     this.items = pairs.slice(0, Relation.SHOWN).map((pair) => {
       const item = document.createElement("li");
       item.textContent = text(pair);
       return item;
     });
-    this.list.append(...this.items);
+    this.list.replaceChildren(...this.items);
     const leftOut = section.querySelector(".left-out");
     leftOut.hidden = pairs.length <= Relation.SHOWN;
     leftOut.textContent = `The first ${Relation.SHOWN} of ${pairs.length} pairs are shown.`;

@@ -1,9 +1,45 @@
 // The walk: both robots take the same actions, by hand, at random, or on the walk that distinguishes them.
 
 const data = JSON.parse(find("#data").textContent);
-for (const { states } of data.sides) {
-  for (const state of states) {
-    state.actions = new Map(state.actions.map(([action, to]) => [action, states[to]]));
+const sides = data.sides.map(({ world, facing, ...rest }) => {
+  const graph = Graph.of(world);
+  return { ...rest, graph, facing: graph.dart(facing) };
+});
+
+/** A robot in one of the worlds, as its picture and its texts show it. */
+class WalkState {
+  constructor(side, robot) {
+    Object.assign(this, { side, robot });
+  }
+
+  get dart() {
+    return this.robot.pose;
+  }
+
+  get vertex() {
+    return this.robot.graph.vertex(this.robot.pose);
+  }
+
+  get percept() {
+    return perceptText(this.robot.percept());
+  }
+
+  get parts() {
+    return markerParts(this.robot.marker, this.robot.graph, this.robot.placed);
+  }
+
+  /** The state after each action. */
+  get actions() {
+    return new Map(this.robot.actions().map((action) => [action, new WalkState(this.side, this.robot.after(action))]));
+  }
+
+  /** The pose as vertex:door, counted from the vertex's first; and where a movable marker is. */
+  get text() {
+    const { marker, graph, pose, placed } = this.robot;
+    const { vertices } = this.side;
+    const at = `${vertices[this.vertex]}:${graph.index(pose)}`;
+    if (marker !== MOVABLE) return at;
+    return placed === null ? `${at}+marker` : `${at}@${vertices[graph.vertex(placed)]}`;
   }
 }
 
@@ -17,22 +53,61 @@ const still = matchMedia("(prefers-reduced-motion: reduce)");
 const worlds = [...document.querySelectorAll(".world")];
 const panels = worlds.map((figure) => new Panel(figure, (action) => byHand(action)));
 const percepts = new Percepts(find(".percepts"));
-const pairText = ([a, b]) => `${data.sides[0].states[a].text} ~ ${data.sides[1].states[b].text}`;
-const relation = data.relation && new Relation(find(".relation"), data.relation, pairText);
-const indices = data.sides.map(({ states }) => new Map(states.map((state, at) => [state, at])));
 
+/** The marker; the initial states; the walk that distinguishes the worlds, or the pairs that the robots can reach. */
+let marker, initial, walk, relation;
 /** The two states at each step so far, and the action before it. */
 const steps = [];
+let isBlind = false;
+
 const here = () => steps.at(-1).states;
-const pair = (states) => states.map((state, side) => indices[side].get(state));
+const pair = (states) => states.map((state) => state.text);
 const differ = ([a, b]) => a.percept !== b.percept;
-const shared = (action) => here().every((state) => state.actions.has(action));
+const shared = (action) => here().every(({ robot }) => robot.actions().includes(action));
 const called = (action) => (isDoor(action) ? `door ${action}` : action);
+const startText = ({ robot, side }) => `${side.vertices[robot.graph.vertex(robot.pose)]}:${side.facings[robot.pose]}`;
+
+/** Compares the worlds with a marker, and begins a walk. */
+function choose(name) {
+  marker = name;
+  const ends = sides.map(({ graph, facing }) => [graph, facing]);
+  const poses = name === data.marker ? [sides[1].graph.dart(data.pose)] : undefined;
+  const found = compareWorlds(marker, ends, poses);
+  initial = found.robots.map((robot, side) => new WalkState(sides[side], robot));
+  walk = found.walk;
+  const pairs = found.pairs?.map((robots) => pair(robots.map((robot, side) => new WalkState(sides[side], robot))));
+  relation = pairs ? new Relation(find(".relation"), pairs, ([a, b]) => `${a} ~ ${b}`) : null;
+  find(".relation").hidden = relation === null;
+  find("#distinguish").hidden = !walk?.length;
+  showVerdict();
+  showKeys();
+  restart();
+}
+
+/** What a walk can show, unless the person has to find it. */
+function showVerdict() {
+  const { about } = data.markers.find(({ name }) => name === marker);
+  const [a, b] = initial.map(startText);
+  const from = `From ${a} in A and ${b} in B`;
+  const verdicts = {
+    none: `${from} no walk distinguishes these worlds: whatever both robots do, they perceive the same.`,
+    first: `${from} the first percepts differ.`,
+    walk: `${from} the walk ${walk?.join(", ")} distinguishes these worlds.`,
+    unknown: `${from} the robots can be in more than ${MOST_PAIRS.toLocaleString("en")} pairs of states, which are not listed.`,
+  };
+  const kind = walk === null ? (relation === null ? "unknown" : "none") : walk.length === 0 ? "first" : "walk";
+  const hidden = "Does a walk distinguish the two worlds? Find one, or show the worlds.";
+  find(".about").textContent = `${about[0].toUpperCase()}${about.slice(1)} ${isBlind ? hidden : verdicts[kind]}`;
+}
 
 function stepText({ action, states }) {
   const [a, b] = states.map((state) => state.percept);
-  const when = action === null ? "At the start" : `Step ${steps.length - 1}, ${called(action)}`;
-  return a === b ? `${when}: both perceive ${a}.` : `${when}: they differ. A: ${a}; B: ${b}.`;
+  const moves = steps.length - 1;
+  const when = action === null ? "At the start" : `Step ${moves}, ${called(action)}`;
+  if (a === b) return `${when}: both perceive ${a}.`;
+  const shortest = walk === null ? "" : ` The shortest walk that distinguishes the worlds has ${walk.length} of them.`;
+  const found = isBlind ? ` You have distinguished the worlds in ${moves === 1 ? "1 step" : `${moves} steps`}.${shortest}` : "";
+  return `${when}: they differ. A: ${a}; B: ${b}.${found}`;
 }
 
 /** Shows the robots' current states; with a `duration` they travel there. */
@@ -42,11 +117,29 @@ function show(duration = 0) {
     panel.show(states[side], shared, still.matches ? 0 : duration);
     worlds[side].classList.toggle("differs", differ(states));
     worlds[side].querySelector(".state").textContent = states[side].text;
+    worlds[side].querySelector(".marker-place").textContent = markerText(states[side]);
     worlds[side].querySelector(".percept").textContent = states[side].percept;
   }
   relation?.show(pair(states));
   showActions();
   say(stepText(steps.at(-1)));
+}
+
+/** Where the marker is in the picture. Doors have the numbers of the picture, which are not those of the robot. */
+function markerText({ parts, robot, side }) {
+  const name = (dart) => side.vertices[robot.graph.vertex(dart)];
+  const edge = (dart) => side.edges?.[dart] ?? `${name(dart)} to ${name(robot.graph.opposite(dart))}`;
+  if (robot.carries) return "The robot carries the marker.";
+  const texts = {
+    pointing: (dart) => `The marker lies at ${name(dart)}, along the small number ${robot.graph.index(dart)}.`,
+    edge: (dart) => `The edge ${edge(dart)} is marked.`,
+    arrow: (dart) => `The edge ${edge(dart)} is marked with an arrow away from ${name(dart)}.`,
+  };
+  const [first] = parts;
+  if (first === undefined) return "There is no marker.";
+  if (texts[first.drawn]) return texts[first.drawn](first.dart);
+  const places = parts.map(({ dart, drawn }) => name(dart) + (drawn === "second" ? " (dashed)" : ""));
+  return parts.length === 1 ? `The marker lies at ${places[0]}.` : `The markers lie at ${places.join(" and ")}.`;
 }
 
 function enter(action, states) {
@@ -75,7 +168,7 @@ function restart() {
   steps.length = 0;
   percepts.clear();
   relation?.clear();
-  enter(null, data.sides.map(({ states, start }) => states[start]));
+  enter(null, initial);
   show();
 }
 
@@ -85,6 +178,16 @@ function undo() {
   relation?.visit(pair(steps.pop().states), -1);
   percepts.removeLast();
   show();
+}
+
+/** Hides the worlds, so that only the percepts are left to find a walk; or shows them. */
+function hide() {
+  isBlind = !isBlind;
+  document.body.classList.toggle("blind", isBlind);
+  find("#hide").setAttribute("aria-pressed", String(isBlind));
+  showVerdict();
+  if (isBlind) restart();
+  else show();
 }
 
 // Automatic walks.
@@ -116,52 +219,52 @@ function randomWalk() {
   if (walking) return;
   let left = RANDOM_STEPS;
   play(() => {
-    const open = [...here()[0].actions.keys()].filter(shared);
+    const open = here()[0].robot.actions().filter(shared);
     return left-- > 0 ? open[Math.floor(Math.random() * open.length)] : undefined;
   }, AT_RANDOM);
 }
 
 function distinguish() {
+  if (!walk?.length || isBlind) return;
   restart();
-  const left = [...data.walk];
+  const left = [...walk];
   timer = setTimeout(play, TELLING.rest, () => left.shift(), TELLING);
 }
 
 // Buttons and keys.
 
-const order = (action) => (isDoor(action) ? Number(action) : Infinity);
-const buttons = new Map();
-{
-  const actions = new Set(data.sides.flatMap(({ states }) => states.flatMap((s) => [...s.actions.keys()])));
-  for (const action of [...actions].sort((one, two) => order(one) - order(two) || (one < two ? 1 : -1))) {
-    buttons.set(action, actionButton(action, () => byHand(action)));
-  }
-  find(".doors").append(...buttons.values());
-}
-
-/** An action that neither robot can take is hidden; one that only one of them can take is disabled. */
+/** An action that only one of the robots can take is disabled. */
 function showActions() {
-  for (const [action, button] of buttons) {
-    const focused = document.activeElement === button;
-    button.hidden = !here().some((state) => state.actions.has(action));
+  const row = find(".doors");
+  const focused = document.activeElement.dataset?.action;
+  const robots = here().map(({ robot }) => robot.actions());
+  const [longer, other] = robots[0].length < robots[1].length ? [robots[1], robots[0]] : robots;
+  const actions = [...longer, ...other.filter((action) => !longer.includes(action))];
+  const buttons = actions.map((action) => {
+    const button = actionButton(action, () => byHand(action));
+    button.dataset.action = action;
     button.setAttribute("aria-disabled", String(!shared(action)));
-    if (focused && button.hidden) buttons.get("0")?.focus();
-  }
+    return button;
+  });
+  row.replaceChildren(...buttons);
+  if (focused !== undefined) (buttons.find(({ dataset }) => dataset.action === focused) ?? buttons[0]).focus();
   find("#undo").setAttribute("aria-disabled", String(steps.length === 1));
 }
 
-const keys = [
-  [[" "], "Space", "random walk", randomWalk],
-  [["Backspace", "u"], "Backspace", "undo", undo],
-  [["r"], "R", "restart", restart],
-];
-if (data.walk?.length) keys.unshift([["w"], "W", "the walk that distinguishes them", distinguish]);
-for (const [action, key] of [["drop", "d"], ["pick-up", "p"]]) {
-  if (buttons.has(action)) keys.unshift([[key], key.toUpperCase(), action, () => byHand(action)]);
+/** The keys of this marker: for each its names, how it is written, what it does. */
+function keys() {
+  return [
+    ...(marker === MOVABLE ? [[["d"], "D", DROP, () => byHand(DROP)], [["p"], "P", PICK_UP, () => byHand(PICK_UP)]] : []),
+    ...(walk?.length ? [[["w"], "W", "the walk that distinguishes them", distinguish]] : []),
+    [[" "], "Space", "random walk", randomWalk],
+    [["Backspace", "u"], "Backspace", "undo", undo],
+    [["r"], "R", "restart", restart],
+    [["h"], "H", "hide or show the worlds", hide],
+  ];
 }
 
 onKey((event) => {
-  const meant = keys.find(([names]) => names.includes(event.key) || names.includes(event.key.toLowerCase()));
+  const meant = keys().find(([names]) => names.includes(event.key) || names.includes(event.key.toLowerCase()));
   const door = doorOfKey(event);
   return meant?.[3] ?? (door === null ? null : () => byHand(door));
 });
@@ -169,23 +272,27 @@ onKey((event) => {
 find("#random").addEventListener("click", randomWalk);
 find("#undo").addEventListener("click", undo);
 find("#restart").addEventListener("click", restart);
-find("#distinguish").hidden = !data.walk?.length;
+find("#hide").addEventListener("click", hide);
 find("#distinguish").addEventListener("click", distinguish);
 
-// The legend of the keys and the signs.
-
-{
+/** The legend of the keys and the signs. */
+function showKeys() {
   const key = (name) => Object.assign(document.createElement("kbd"), { textContent: name });
-  const hints = keys.flatMap(([, name, meaning]) => [" · ", key(name), ` ${meaning}`]);
-  find(".keys").append("Keys: ", key("0"), " to ", key("9"), " doors", ...hints);
-
+  const hints = keys().flatMap(([, name, meaning]) => [" · ", key(name), ` ${meaning}`]);
+  find(".keys").replaceChildren("Keys: ", key("0"), " to ", key("9"), " doors", ...hints);
   const doors =
-    "Blue numbers are the doors as each robot counts them, 0 is the way back; " +
-    "small ones count clockwise from each vertex's first.";
-  const [first] = data.sides[0].states;
-  const carried = first.marker === null ? "" : " @ is the place of the marker, +marker that it is carried.";
-  const states = `${first.text} is a robot that has come in by the door of that small number.${carried}`;
-  find(".meaning").textContent = `${doors} ${states}`;
+    "Blue numbers are the doors as each robot counts them, 0 is the way back; percepts have these numbers. " +
+    "Small numbers count clockwise from each vertex's first.";
+  const carried = marker === MOVABLE ? " @ is the place of the marker, +marker that it is carried." : "";
+  const states = `${initial[0].text} is a robot that has come in by the door of that small number.${carried}`;
+  find(".meaning").textContent = `${doors} ${states} Red is the marker.`;
 }
 
-restart();
+{
+  const options = data.markers.map(({ name }) => Object.assign(document.createElement("option"), { value: name, textContent: name }));
+  find("#marker").append(...options);
+  find("#marker").value = data.marker;
+  find("#marker").addEventListener("change", () => choose(find("#marker").value));
+}
+
+choose(data.marker);

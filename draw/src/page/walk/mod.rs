@@ -1,19 +1,16 @@
-//! A page on which a reader walks two worlds at once: a robot in each, both sent through the same
-//! doors, and the percepts of each. Section 2.2, Figure 1.
+//! A page on which a reader walks two worlds at once: a robot in each, both sent through the same doors, and the percepts of
+//! each. The page compares the worlds with the marker that the reader chooses. Section 2.2, Figure 1.
 
 mod data;
-mod side;
 
-pub(super) use data::side as side_json;
-pub(super) use side::WalkSide;
 use toposlam_model::{
-    ambiguity::Comparison, embedded_graph::Dart, format::named_world::NamedWorld,
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+    marker::{Marker, NoMarker},
 };
 
-use crate::{
-    page::{PAGE_SCRIPT, PAGE_STYLE, template::filled},
-    picture::escaped,
-};
+use super::{GRAPH_SCRIPT, MARKER_SCRIPT, PAGE_SCRIPT, PAGE_STYLE, template::filled};
+use crate::picture::{WorldPicture, escaped, svg};
 
 /// If the robots can be in more pairs of states, the pairs are not listed.
 pub const MOST_PAIRS: usize = 100_000;
@@ -21,20 +18,22 @@ pub const MOST_PAIRS: usize = 100_000;
 /// The content of the page.
 #[derive(Clone, Copy)]
 pub struct WalkPage<'a> {
-    /// The heading, such as "figure-1a and figure-1b, undirected marker".
-    pub title: &'a str,
-    /// A sentence or two beneath it; may be empty.
-    pub about: &'a str,
     pub worlds: [&'a NamedWorld; 2],
-    pub comparison: &'a Comparison<'a>,
-    /// The initial poses of the two robots: the darts by which they came in.
-    pub poses: [Dart; 2],
+    /// The darts that place the marker. The robot of the first world begins with that dart behind it.
+    pub facings: [Dart; 2],
+    /// The dart behind the robot of the second world at the start.
+    pub pose: Dart,
+    /// The kind of marker at first.
+    pub marker: &'a dyn Marker,
 }
 
 const PAGE: &str = include_str!("../browser/walk.html");
 /// In the order of their dependencies; they share one scope.
-const SCRIPT: [&str; 5] = [
+const SCRIPT: [&str; 8] = [
     PAGE_SCRIPT,
+    GRAPH_SCRIPT,
+    MARKER_SCRIPT,
+    include_str!("../browser/comparison.js"),
     include_str!("../browser/panel.js"),
     include_str!("../browser/percepts.js"),
     include_str!("../browser/relation.js"),
@@ -43,32 +42,34 @@ const SCRIPT: [&str; 5] = [
 
 /// The page as an HTML document. The same worlds give the same bytes.
 pub fn page(page: &WalkPage) -> String {
-    let robots = page.comparison.starts(page.poses);
-    let [one, other] = [0, 1].map(|at| WalkSide::new(page.worlds[at], &robots[at]));
+    let [one, other] = page.worlds;
     filled(
         PAGE,
         &[
-            ("title", &escaped(page.title)),
-            ("about", &escaped(page.about)),
+            ("title", &escaped(&format!("{} and {}", one.name, other.name))),
             ("style", PAGE_STYLE),
-            ("name of A", &escaped(&page.worlds[0].name)),
-            ("name of B", &escaped(&page.worlds[1].name)),
-            ("marker of A", &escaped(&one.marker_place())),
-            ("marker of B", &escaped(&other.marker_place())),
-            ("picture of A", &one.picture()),
-            ("picture of B", &other.picture()),
-            ("data", &data::json(page, [&one, &other])),
+            ("name of A", &escaped(&one.name)),
+            ("name of B", &escaped(&other.name)),
+            ("picture of A", &picture(one)),
+            ("picture of B", &picture(other)),
+            ("data", &data::json(page)),
             ("script", &SCRIPT.concat()),
         ],
     )
 }
 
+/// The drawing of a world, without texts and without a marker, which the page draws.
+fn picture(world: &NamedWorld) -> String {
+    let (title, caption, marker) = ("", "", &NoMarker as &dyn Marker);
+    svg(&WorldPicture { start: None, marker, title, caption, ..WorldPicture::from(world) })
+}
+
 #[cfg(test)]
 mod tests {
-    use serde_json::{Value, json};
+    use serde_json::json;
     use toposlam_model::{
         embedded_graph::EmbeddedGraph,
-        marker::{self, Marker},
+        marker::{self, Undirected},
     };
 
     use super::*;
@@ -85,52 +86,29 @@ mod tests {
         NamedWorld::numbered(name, "", graph, Some(Dart(0)))
     }
 
-    fn document(marker: &'static dyn Marker, worlds: [&NamedWorld; 2], title: &str) -> String {
-        let placed = worlds.map(|world| (&world.graph, Dart(0)));
-        let comparison = Comparison::new(marker, placed[0], placed[1]);
-        let poses = [Dart(0), Dart(0)];
-        page(&WalkPage { title, about: title, worlds, comparison: &comparison, poses })
+    fn document(marker: &'static dyn Marker, worlds: [&NamedWorld; 2]) -> String {
+        page(&WalkPage { worlds, facings: [Dart(0), Dart(1)], pose: Dart(2), marker })
     }
 
     #[test]
     fn names_are_escaped_everywhere() {
-        let worlds = [chain(NASTY, 1), chain("plain", 1)];
-        let document = document(&marker::NoMarker, worlds.each_ref(), NASTY);
+        let worlds = [chain(NASTY, 1), chain("plain", 2)];
+        let document = document(&marker::NoMarker, worlds.each_ref());
         assert_escaped(&document);
         assert_eq!(data_of(&document)["sides"][0]["name"], NASTY);
     }
 
     #[test]
-    fn the_data_has_the_state_after_each_action_and_the_difference_of_the_worlds() {
+    fn the_data_has_the_worlds_and_where_the_robots_and_the_markers_are() {
         let worlds = [chain("one", 1), chain("two", 2)];
-        let data = data_of(&document(&marker::Directional, worlds.each_ref(), ""));
-        assert_eq!((&data["relation"], &data["walk"]), (&Value::Null, &json!(["0"])));
-        let far = |degree: u32| {
-            json!({
-                "text": "v1:0",
-                "dart": 1,
-                "vertex": 1,
-                "percept": if degree == 1 { "1 door" } else { "2 doors" },
-                "actions": if degree == 1 { json!([["0", 0]]) } else { json!([["0", 0], ["1", 2]]) },
-                "marker": null,
-            "pointing": 0,
-            })
-        };
-        assert_eq!(data["sides"][0]["states"][1], far(1));
-        assert_eq!(data["sides"][1]["states"][1], far(2));
-    }
-
-    #[test]
-    fn the_data_has_the_pairs_that_the_robots_can_reach() {
-        let worlds = [chain("one", 1), chain("other", 1)];
-        let data = data_of(&document(&marker::Movable, worlds.each_ref(), ""));
-        assert_eq!(data["walk"], Value::Null);
-        assert_eq!(data["relation"].as_array().unwrap().len(), 6);
-        assert_eq!(data["relation"][0], json!([0, 0]));
-        let carried = &data["sides"][0]["states"][2];
-        assert_eq!(carried["text"], "v0:0+marker");
-        assert_eq!(carried["marker"], "carried");
-        assert_eq!(data["sides"][0]["states"][0]["marker"], 0);
-        assert_eq!(carried["actions"], json!([["0", 3], ["drop", 0]]));
+        let data = data_of(&document(&Undirected, worlds.each_ref()));
+        assert_eq!(data["marker"], "undirected");
+        assert_eq!(data["markers"].as_array().unwrap().len(), 8);
+        let [one, two] = [&data["sides"][0], &data["sides"][1]];
+        assert_eq!(one["world"], json!([[[1, 0]], [[0, 0]]]));
+        assert_eq!(one["facing"], json!([0, 0]));
+        assert_eq!(two["world"], json!([[[1, 0]], [[0, 0], [2, 0]], [[1, 1]]]));
+        assert_eq!((&two["facing"], &data["pose"]), (&json!([1, 0]), &json!([1, 1])));
+        assert_eq!(two["facings"], json!(["v1", "v0", "v2", "v1"]));
     }
 }

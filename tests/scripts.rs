@@ -1,11 +1,12 @@
-//! The rules of the game, which the page of `play` applies in the browser, against those of the specification: the judge,
-//! folding, the sightings of each marker, and the smallest other world that explains a walk, against trying them all.
-//! Sections 2.1 to 2.3.
+//! The rules of the pages of `play` and `compare`, which their scripts apply in the browser, against those of the
+//! specification: the judge, folding, the sightings of each marker, comparisons of worlds, and the smallest other world that
+//! explains a walk, against trying them all. Sections 2.1 to 2.3.
 
 use std::{borrow::Cow, fmt::Write as _, fs};
 
 use serde_json::{Value, json};
 use toposlam_model::{
+    ambiguity::{Bisimulation, Comparison},
     check::judge_map,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
@@ -40,10 +41,10 @@ fn answers(name: &str, cases: &[Value]) -> Option<Vec<String>> {
     for case in cases {
         writeln!(lines, "{case}").unwrap();
     }
-    let file = output::folder("game-rules").join(name);
+    let file = output::folder(name).join("cases.jsonl");
     fs::write(&file, lines).unwrap();
     let scripts = repository("draw/src/page/browser");
-    let printed = browser::run_in_node("game.mjs", &[scripts.as_os_str(), file.as_os_str()])?;
+    let printed = browser::run_in_node("scripts.mjs", &[scripts.as_os_str(), file.as_os_str()])?;
     let answers: Vec<_> = printed.lines().map(str::to_owned).collect();
     assert_eq!(answers.len(), cases.len());
     Some(answers)
@@ -122,7 +123,7 @@ fn the_judge_of_the_game_agrees_with_the_specification() {
             }
         }
     }
-    let Some(answers) = answers("maps.jsonl", &cases) else { return };
+    let Some(answers) = answers("scripts-maps", &cases) else { return };
     for (case, (answer, expected)) in answers.iter().zip(expected).enumerate() {
         let found = if ["right", "pose"].contains(&&**answer) { answer } else { "map" };
         assert_eq!(found, expected, "case {case}: {answer}");
@@ -144,7 +145,7 @@ fn the_folded_trails_of_the_game_have_the_same_open_doors() {
             expected.push(open.to_string());
         }
     }
-    let Some(answers) = answers("walks.jsonl", &cases) else { return };
+    let Some(answers) = answers("scripts-walks", &cases) else { return };
     assert_eq!(answers, expected);
     assert!(expected.iter().any(|open| open == "0") && expected.iter().any(|open| open != "0"));
 }
@@ -165,8 +166,50 @@ fn the_sightings_of_each_marker_are_those_of_the_specification() {
             }
         }
     }
-    let Some(answers) = answers("sightings.jsonl", &cases) else { return };
+    let Some(answers) = answers("scripts-sightings", &cases) else { return };
     assert_eq!(answers, expected);
+}
+
+/// Every two starts with up to 2 edges, and some with 3, for each marker.
+#[test]
+fn the_comparisons_of_the_pages_are_those_of_the_specification() {
+    let some = starts(3..=3).into_iter().step_by(9);
+    let worlds: Vec<_> = starts(1..=2).into_iter().chain(some).collect();
+    let (mut cases, mut expected, mut apart) = (Vec::new(), Vec::new(), 0);
+    for marker in MARKERS {
+        for (number, one) in worlds.iter().enumerate() {
+            for other in &worlds[number..] {
+                let facing = Dart(number as u32 % other.dart_count() as u32);
+                cases.push(json!({
+                    "rule": "compare", "marker": marker.name(), "worlds": [lists(one), lists(other)],
+                    "facings": [end(one, Dart(0)), end(other, facing)],
+                }));
+                let comparison = Comparison::new(marker, (one, Dart(0)), (other, facing));
+                let mut poses = marker.starts(other, facing);
+                poses.sort_by_key(|&pose| pose != facing);
+                let bisimulation = |&pose: &Dart| {
+                    let found = comparison.bisimulation([Dart(0), pose], usize::MAX, &()).unwrap();
+                    found.map(|found| (pose, found))
+                };
+                expected.push(match poses.iter().find_map(bisimulation) {
+                    Some((pose, Bisimulation::Relation(relation))) => {
+                        json!([relation.0.len(), pose.0])
+                    }
+                    Some((_, Bisimulation::Classes(_))) => panic!("the relation is small"),
+                    None => {
+                        apart += 1;
+                        let walk = comparison.walk([Dart(0), facing]).unwrap();
+                        let actions: Vec<_> = walk.actions.iter().map(Action::to_string).collect();
+                        json!([actions.join(" "), facing.0])
+                    }
+                });
+            }
+        }
+    }
+    let Some(answers) = answers("scripts-comparisons", &cases) else { return };
+    let expected: Vec<_> = expected.iter().map(Value::to_string).collect();
+    assert_eq!(answers, expected);
+    assert!(apart > 100 && expected.len() - apart > 100);
 }
 
 /// The largest number of edges for which all starts are tried.
@@ -191,7 +234,7 @@ fn the_other_world_of_the_game_is_as_small_as_trying_all_finds() {
             }
         }
     }
-    let Some(answers) = answers("others.jsonl", &cases) else { return };
+    let Some(answers) = answers("scripts-others", &cases) else { return };
     let mut sizes = [0; TRIED + 1];
     let (mut none, mut larger) = (0, 0);
     for ((marker, truth, walk), answer) in walks.iter().zip(answers) {

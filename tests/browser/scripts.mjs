@@ -1,6 +1,6 @@
-// Runs the rules of the game on cases, without a browser.
+// Runs the rules of the pages on cases, without a browser.
 //
-//   node game.mjs SCRIPTS CASES
+//   node scripts.mjs SCRIPTS CASES
 //
 // SCRIPTS is the folder of the scripts. CASES has one JSON object a line, with the name of a rule in `rule`. The answer is
 // one line for each:
@@ -9,16 +9,20 @@
 //   fold      the number of open doors of the folded trail of a walk with a directional marker
 //   sightings what the robot senses in each pose, as a list
 //   other     the smallest other world that explains a walk, as lists; or null
+//   compare   of two worlds: the shortest walk that distinguishes them, or the number of pairs of states that the robots can
+//             reach; and the pose in which the second robot begins
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 
 const [folder, cases] = process.argv.slice(2);
-const scripts = ["graph.js", "marker.js", "play_map.js", "play_judge.js", "play_search.js"];
+const scripts = ["graph.js", "marker.js", "play_map.js", "play_judge.js", "play_search.js", "comparison.js"];
 const source = scripts.map((name) => readFileSync(join(folder, name), "utf8")).join("\n");
-const names = "Graph, FoldedMap, WorldSearch, markerClaims, faultOf, sightings";
-const { Graph, FoldedMap, WorldSearch, markerClaims, faultOf, sightings } = new Function(`${source}\nreturn { ${names} };`)();
+const names = "Graph, FoldedMap, WorldSearch, markerClaims, faultOf, sightings, compareWorlds";
+const { Graph, FoldedMap, WorldSearch, markerClaims, faultOf, sightings, compareWorlds } = new Function(
+  `${source}\nreturn { ${names} };`,
+)();
 
 const rules = {
   judge({ map, pose, world, start, truth }) {
@@ -42,6 +46,12 @@ const rules = {
     const found = search.run();
     assert.ok(found.isSmallest || found.isComplete, "the search reached its limit");
     return JSON.stringify(found.world?.lists() ?? null);
+  },
+  compare({ marker, worlds, facings }) {
+    const graphs = worlds.map(Graph.of);
+    const ends = graphs.map((graph, side) => [graph, graph.dart(facings[side])]);
+    const { walk, pairs, robots } = compareWorlds(marker, ends);
+    return JSON.stringify([walk?.join(" ") ?? pairs.length, robots[1].pose]);
   },
 };
 

@@ -1,0 +1,61 @@
+// Two robots that do the same in two worlds: the walk that distinguishes the worlds, or all pairs of states that the robots
+// can be in.
+
+/** If the robots can be in more pairs of states, they are not compared to the end. */
+const MOST_PAIRS = 100_000;
+
+/** The poses in which the robot may begin, given the marker: the facing dart, then the others in their order. */
+function startsOf(marker, graph, facing) {
+  const far = graph.opposite(facing);
+  const around = (dart) => graph.darts(graph.vertex(dart));
+  const others = {
+    none: () => [...graph.far.keys()],
+    undirected: () => around(facing),
+    movable: () => around(facing),
+    "two-distinct": () => around(facing),
+    "undirected-edge": () => [far],
+    "directed-edge": () => [far],
+    "two-identical": () => [...around(facing), ...around(far)].sort((one, two) => one - two),
+    directional: () => [],
+  };
+  return [...new Set([facing, ...others[marker]()])];
+}
+
+/** Where the marker is, as a text that is equal for places of the marker that are alike. */
+const placeKey = ({ marker, graph, placed }) => (marker === MOVABLE && placed !== null ? graph.vertex(placed) : String(placed));
+
+/**
+ * Compares what two robots perceive: `walk` is the shortest one on which they perceive something different, the least of
+ * several; `pairs` are those of all robots that they can become, if there is none. Both are null if these are too many.
+ */
+function compareRobots(robots) {
+  const steps = [{ robots, before: null, action: null }];
+  const key = (pair) => pair.map((robot) => `${robot.pose} ${placeKey(robot)}`).join(" ");
+  const seen = new Set([key(robots)]);
+  for (const step of steps) {
+    const [here, there] = step.robots.map((robot) => perceptText(robot.percept()));
+    if (here !== there) return { walk: walkTo(step), pairs: null };
+    if (steps.length > MOST_PAIRS) return { walk: null, pairs: null };
+    for (const action of step.robots[0].actions()) {
+      const after = step.robots.map((robot) => robot.after(action));
+      if (seen.has(key(after))) continue;
+      seen.add(key(after));
+      steps.push({ robots: after, before: step, action });
+    }
+  }
+  return { walk: null, pairs: steps.map((step) => step.robots) };
+}
+
+function walkTo(step) {
+  return step.before === null ? [] : [...walkTo(step.before), step.action];
+}
+
+/**
+ * Compares the worlds `[graph, facing]` with a marker. The robot of the second one begins in the first pose from which no
+ * walk distinguishes the worlds, or else by its facing dart.
+ */
+function compareWorlds(marker, [[graph, facing], [other, otherFacing]], poses = startsOf(marker, other, otherFacing)) {
+  const from = (pose) => [new Robot(marker, graph, facing), new Robot(marker, other, pose, otherFacing)];
+  const found = poses.map((pose) => ({ robots: from(pose), ...compareRobots(from(pose)) }));
+  return found.find(({ walk }) => walk === null) ?? found[0];
+}
