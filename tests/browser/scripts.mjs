@@ -19,8 +19,8 @@ import { join } from "node:path";
 const [folder, cases] = process.argv.slice(2);
 const scripts = ["graph.js", "marker.js", "play_map.js", "play_judge.js", "play_search.js", "comparison.js"];
 const source = scripts.map((name) => readFileSync(join(folder, name), "utf8")).join("\n");
-const names = "Graph, FoldedMap, WorldSearch, markerClaims, faultOf, sightings, compareWorlds";
-const { Graph, FoldedMap, WorldSearch, markerClaims, faultOf, sightings, compareWorlds } = new Function(
+const names = "Graph, WorldSearch, foldedTrail, faultOf, sightings, compareWorlds";
+const { Graph, WorldSearch, foldedTrail, faultOf, sightings, compareWorlds } = new Function(
   `${source}\nreturn { ${names} };`,
 )();
 
@@ -31,8 +31,7 @@ const rules = {
     return faultOf(graphs[0], at, graphs[1], facing, robot)?.kind ?? "right";
   },
   fold({ percepts, actions }) {
-    const map = new FoldedMap("directional", percepts, actions, markerClaims(percepts));
-    return String(map.graph.open().length);
+    return String(foldedTrail(percepts, actions).open().length);
   },
   sightings({ marker, world, placed }) {
     const graph = Graph.of(world);
@@ -45,6 +44,12 @@ const rules = {
     const search = new WorldSearch(marker, percepts, actions, (graph) => faultOf(graph, 0, truth, 0, 0) === null);
     const found = search.run();
     assert.ok(found.isSmallest || found.isComplete, "the search reached its limit");
+    if (marker === "directional" && found.world !== null) {
+      // If the search reaches its limit, the folded trail still shows a world.
+      const world = search.closing(foldedTrail(percepts, actions));
+      assert.ok(world !== null && !search.isTrue(world) && search.explains(world));
+      assert.ok(world.dartCount >= found.world.dartCount);
+    }
     return JSON.stringify(found.world?.lists() ?? null);
   },
   compare({ marker, worlds, facings }) {

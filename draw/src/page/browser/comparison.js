@@ -1,7 +1,7 @@
 // Two robots that do the same in two worlds: the walk that distinguishes the worlds, or all pairs of states that the robots
 // can be in.
 
-/** If the robots can be in more pairs of states, they are not compared to the end. */
+/** The most pairs of states that are looked at: for more, a page would have to be waited for. */
 const MOST_PAIRS = 100_000;
 
 /** The poses in which the robot may begin, given the marker: the facing dart, then the others in their order. */
@@ -26,16 +26,17 @@ const placeKey = ({ marker, graph, placed }) => (marker === MOVABLE && placed !=
 
 /**
  * Compares what two robots perceive: `walk` is the shortest one on which they perceive something different, the least of
- * several; `pairs` are those of all robots that they can become, if there is none. Both are null if these are too many.
+ * several; `pairs` are those of all robots that they can become, if there is none. Both are null if these are more than
+ * `most`. `looked` is the number of pairs that were looked at.
  */
-function compareRobots(robots) {
+function compareRobots(robots, most) {
   const steps = [{ robots, before: null, action: null }];
   const key = (pair) => pair.map((robot) => `${robot.pose} ${placeKey(robot)}`).join(" ");
   const seen = new Set([key(robots)]);
   for (const step of steps) {
     const [here, there] = step.robots.map((robot) => perceptText(robot.percept()));
-    if (here !== there) return { walk: walkTo(step), pairs: null };
-    if (steps.length > MOST_PAIRS) return { walk: null, pairs: null };
+    if (here !== there) return { walk: walkTo(step), pairs: null, looked: steps.length };
+    if (steps.length > most) return { walk: null, pairs: null, looked: steps.length };
     for (const action of step.robots[0].actions()) {
       const after = step.robots.map((robot) => robot.after(action));
       if (seen.has(key(after))) continue;
@@ -43,7 +44,7 @@ function compareRobots(robots) {
       steps.push({ robots: after, before: step, action });
     }
   }
-  return { walk: null, pairs: steps.map((step) => step.robots) };
+  return { walk: null, pairs: steps.map((step) => step.robots), looked: steps.length };
 }
 
 function walkTo(step) {
@@ -55,7 +56,14 @@ function walkTo(step) {
  * walk distinguishes the worlds, or else by its facing dart.
  */
 function compareWorlds(marker, [[graph, facing], [other, otherFacing]], poses = startsOf(marker, other, otherFacing)) {
-  const from = (pose) => [new Robot(marker, graph, facing), new Robot(marker, other, pose, otherFacing)];
-  const found = poses.map((pose) => ({ robots: from(pose), ...compareRobots(from(pose)) }));
-  return found.find(({ walk }) => walk === null) ?? found[0];
+  let left = MOST_PAIRS;
+  let first;
+  for (const pose of poses) {
+    const robots = [new Robot(marker, graph, facing), new Robot(marker, other, pose, otherFacing)];
+    const found = { robots, ...compareRobots(robots, left) };
+    if (found.walk === null) return found;
+    first ??= found;
+    left -= found.looked;
+  }
+  return first;
 }

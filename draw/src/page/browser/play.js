@@ -201,9 +201,13 @@ function finish() {
 
 /** The smallest other world that explains the walk. */
 function otherWorld() {
-  if (marker === "directional" && determinesWorld(percepts, actions)) return { world: null, isComplete: true };
+  const trail = marker === "directional" ? foldedTrail(percepts, actions) : null;
+  if (trail?.open().length === 0) return { world: null, isComplete: true };
   const isTrue = (graph) => faultOf(graph, 0, game.graph, game.start, game.start) === null;
-  return new WorldSearch(marker, percepts, actions, isTrue).run();
+  const search = new WorldSearch(marker, percepts, actions, isTrue);
+  const found = search.run();
+  // Behind an open door of the folded trail, there may be anything.
+  return trail !== null && found.world === null ? { world: search.closing(trail), isSmallest: false } : found;
 }
 
 function rightText({ world, isComplete }) {

@@ -168,7 +168,5 @@ function markerClaims(percepts) {
   return later.flatMap((door, step) => (door === null ? [] : [[[0, start], [step + 1, door]]]));
 }
 
-/** Whether a walk with a directional marker determines its world: its folded trail has no open dart. */
-function determinesWorld(percepts, actions) {
-  return new FoldedMap("directional", percepts, actions, markerClaims(percepts)).graph.open().length === 0;
-}
+/** The folded trail of a walk with a directional marker. The walk determines its world exactly if no dart is open. */
+const foldedTrail = (percepts, actions) => new FoldedMap("directional", percepts, actions, markerClaims(percepts)).graph;

@@ -35,6 +35,12 @@ class WorldSearch {
     return { world: any, isSmallest: true };
   }
 
+  /** A world of any size that a graph with open darts becomes. */
+  closing(graph) {
+    Object.assign(this, { graph, most: Infinity, steps: SEARCH_STEPS, prefersSimple: false });
+    return this.close();
+  }
+
   isOver() {
     return this.steps <= 0;
   }
