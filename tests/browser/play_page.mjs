@@ -8,7 +8,7 @@
 // proves the map with the marker of the page; movable: the walk of the movable marker algorithm.
 
 import assert from "node:assert/strict";
-import { DESK, LAPTOP, READER, assertFitsPhone, assertNamesReadable, photograph, seeded, visitAll } from "./visits.mjs";
+import { DESK, LAPTOP, READER, assertFitsPhone, assertNamesReadable, assertReadable, photograph, seeded, visitAll } from "./visits.mjs";
 
 /** What the page shows now. */
 function shown(page) {
@@ -427,6 +427,7 @@ async function visit(page, kind, file) {
   await photograph(page, file, "start");
   const games = { right: win, loops: playLoops, guessed: guess, proved: prove, movable: carry };
   const found = await games[kind](page, file);
+  await assertReadable(page, file, "end");
   for (const [name, size] of [["desk", DESK], ["laptop", LAPTOP]]) {
     await page.setViewportSize(size);
     await page.evaluate(() => scrollTo(0, 0));

@@ -6,7 +6,7 @@
 // plan is large, and there are no images.
 
 import assert from "node:assert/strict";
-import { DESK, LAPTOP, assertFitsPhone, assertNamesReadable, photograph, visitAll } from "./visits.mjs";
+import { DESK, LAPTOP, assertFitsPhone, assertNamesReadable, assertReadable, photograph, visitAll } from "./visits.mjs";
 
 /** What the page shows now. */
 function shown(page) {
@@ -281,10 +281,7 @@ async function visit(page, kind, file) {
   assert.equal(await page.locator(".floor .call.wrong").count(), 0);
   const middle = data.calls[3].rounds - 1;
   await page.locator("#round").fill(String(middle));
-  await photograph(page, file, "light");
-  await page.emulateMedia({ colorScheme: "dark" });
-  await photograph(page, file, "dark");
-  await page.emulateMedia({ colorScheme: "light" });
+  await assertReadable(page, file, "middle");
   await assertOneScreen(page, kind);
   await followTrail(page, data, file);
   await enlarge(page);

@@ -9,8 +9,7 @@ class Floor {
     this.svg = figure.querySelector("svg");
     this.rounds = rounds;
     this.body = body;
-    this.svg.setAttribute("aria-label", "The floor plan, and the robot's way so far");
-    this.svg.querySelector("title")?.remove();
+    label(this.svg, "The floor plan, and the robot's way so far");
     const all = (selector) => [...this.svg.querySelectorAll(selector)];
     this.lines = all(".trajectory").map((line) => {
       const [first, last] = line.dataset.rounds.split(" ").map(Number);

@@ -53,6 +53,12 @@ function keepReadable(svg, size = nameSize(svg)) {
   svg.style.setProperty("--readable-height", `${(height * READABLE) / size}px`);
 }
 
+/** Names a picture; its title would pop up under the pointer. */
+function label(svg, text) {
+  svg.querySelector("title")?.remove();
+  svg.setAttribute("aria-label", text);
+}
+
 /** Crops a picture of a world to its drawing: the page has the texts, and a phone has little room. */
 function crop(svg) {
   for (const element of svg.querySelectorAll(".title, .caption, .legend, .scale, .names ~ .marker")) element.remove();

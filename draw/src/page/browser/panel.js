@@ -17,9 +17,7 @@ class Panel {
     this.figure = figure;
     this.onDoor = onDoor;
     this.svg = figure.querySelector("svg");
-    // The title would pop up under the pointer.
-    this.svg.querySelector("title")?.remove();
-    this.svg.setAttribute("aria-label", figure.querySelector("figcaption .name").textContent);
+    label(this.svg, figure.querySelector("figcaption .name").textContent);
     crop(this.svg);
     keepReadable(this.svg);
 

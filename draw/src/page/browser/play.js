@@ -243,8 +243,7 @@ function faultText({ kind, vertex, degree, vertices }) {
 function showWorld() {
   const svg = find(".solution svg");
   crop(svg);
-  svg.querySelector("title")?.remove();
-  svg.setAttribute("aria-label", `The world ${game.name}`);
+  label(svg, `The world ${game.name}`);
   const sizes = [...svg.querySelectorAll("text")].map((text) => parseFloat(getComputedStyle(text).fontSize));
   keepReadable(svg, Math.min(...sizes));
 }

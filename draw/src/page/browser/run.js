@@ -11,6 +11,7 @@ const last = rounds.length - 1;
 
 const floor = new Floor(find(".floor"), rounds, data.body);
 const stages = [...document.querySelectorAll(".map .stage")];
+for (const [number, stage] of stages.entries()) label(stage.querySelector("svg"), `The map, ${number + 1} of ${stages.length}`);
 for (const svg of document.querySelectorAll(".map svg")) {
   keepReadable(svg);
 }

@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn the_data_is_the_world_and_the_walks_to_compare_with() {
         let world = world("loop");
-        let game = &data_of(&play_page(&[world.clone()], &Directional))["games"][0];
+        let game = &data_of(&play_page(std::slice::from_ref(&world), &Directional))["games"][0];
         assert_eq!(game["world"], json!([[[1, 0]], [[0, 0], [1, 2], [1, 1]]]));
         assert_eq!(game["start"], json!([0, 0]));
         let walks = &game["walks"];

@@ -45,7 +45,7 @@ pub fn run_page(run_data: &RunPageData) -> String {
 
 /// Every map, each in its own element; the page shows one of them.
 fn maps(run_data: &RunPageData) -> String {
-    let of = |svg: &String| format!("<div class=\"stage\" hidden>\n{svg}</div>\n");
+    let of = |svg: &String| format!("<div class=\"stage\" tabindex=\"0\" hidden>\n{svg}</div>\n");
     let maps: Vec<_> = run_data.maps(usize::MAX).cloned().collect();
     growth(&maps).iter().map(of).collect()
 }

@@ -67,10 +67,7 @@ fn picture(world: &NamedWorld) -> String {
 #[cfg(test)]
 mod tests {
     use serde_json::json;
-    use toposlam_model::{
-        embedded_graph::EmbeddedGraph,
-        marker::{self, Undirected},
-    };
+    use toposlam_model::{embedded_graph::EmbeddedGraph, marker::Undirected};
 
     use super::*;
     use crate::page::template::checks::{NASTY, assert_escaped, data_of};
@@ -93,7 +90,7 @@ mod tests {
     #[test]
     fn names_are_escaped_everywhere() {
         let worlds = [chain(NASTY, 1), chain("plain", 2)];
-        let document = document(&marker::NoMarker, worlds.each_ref());
+        let document = document(&NoMarker, worlds.each_ref());
         assert_escaped(&document);
         assert_eq!(data_of(&document)["sides"][0]["name"], NASTY);
     }
