@@ -75,7 +75,8 @@ fn the_page_of_an_explorer_steps_through_its_run() {
     let pages = ends.map(|(kind, answer)| {
         let script = folder.join(format!("{kind}.sh"));
         let doors = [0, 1, 1].map(|door| format!("read line; echo '{{\"door\":{door}}}'\n"));
-        fs::write(&script, format!("{}read line; echo '{answer}'; read line\n", doors.concat())).unwrap();
+        fs::write(&script, format!("{}read line; echo '{answer}'; read line\n", doors.concat()))
+            .unwrap();
         let page = folder.join(format!("{kind}.html"));
         let output = program()
             .args(["check", "--from", "worlds/chain-5.toml", "--start", "v0:v1", "--explorer"])

@@ -82,7 +82,7 @@ pub(crate) fn explorer_run<'py>(
         let found = PyDict::new(py);
         found.set_item("story", String::from_utf8_lossy(&story))?;
         found.set_item("picture", run.picture())?;
-        found.set_item("page", explorer_page("Run of an explorer", ending, &run))?;
+        found.set_item("page", explorer_page(ending, &run))?;
         Ok(found)
     })
 }

@@ -122,7 +122,7 @@ impl ReportedRun {
         }
         let ending = self.message.as_deref().unwrap_or("The map and the pose are right");
         let end = if ending.ends_with('?') { "" } else { "." };
-        let page = explorer_page("Run of an explorer", &format!("{ending}{end}"), &run);
+        let page = explorer_page(&format!("{ending}{end}"), &run);
         output::write_whole(path, page.as_bytes())
     }
 

@@ -1,11 +1,7 @@
 // The run of an explorer: the slider, the buttons, the keys and the table choose a step, and the robots go there.
 
 const data = JSON.parse(find("#data").textContent);
-for (const { states } of data.sides) {
-  for (const state of states) {
-    state.actions = new Map(state.actions.map(([action, to]) => [action, states[to]]));
-  }
-}
+const sides = data.sides.map(sideOf);
 
 /** The times that a robot travels and then rests, in milliseconds. */
 const TRAVEL = 420;
@@ -14,12 +10,14 @@ const REST = 380;
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 const figures = [...document.querySelectorAll(".world")];
 const panels = figures.map((figure) => new Panel(figure, () => {}));
-const steps = data.steps.map(({ action, percept, states }) => ({
-  action,
-  percept,
-  // Beside the world, null where the action is not possible there.
-  states: data.sides.map((side, at) => (states[at] === null ? null : side.states[states[at]])),
-}));
+/** The robots of the last step; null where an action is not possible. */
+let robots = sides.map(({ graph, facing }) => new Robot(data.marker, graph, facing));
+const steps = data.steps.map(({ action, percept }) => {
+  if (action !== null) {
+    robots = robots.map((robot) => (robot?.actions().includes(action) ? robot.after(action) : null));
+  }
+  return { action, percept, states: robots.map((robot, side) => robot && new WalkState(sides[side], robot)) };
+});
 const differs = ({ states: [here, there] }) => there !== undefined && there?.percept !== here.percept;
 const difference = steps.findIndex(differs);
 const last = steps.length - 1;
@@ -52,6 +50,7 @@ function show(number, duration = 0) {
     const state = states[side];
     figures[side].classList.toggle("differs", at === difference);
     figures[side].querySelector(".state").textContent = state?.text ?? "";
+    figures[side].querySelector(".marker-place").textContent = state ? markerText(state) : "";
     figures[side].querySelector(".percept").textContent = side === 0 ? percept : (state?.percept ?? NOT_POSSIBLE);
     if (state) panel.show(state, () => true, still.matches ? 0 : duration);
   }

@@ -21,7 +21,8 @@ pub(super) fn json(page: &WalkPage) -> String {
     }))
 }
 
-fn side(world: &NamedWorld, facing: Dart) -> Value {
+/// A world for the scripts, with the dart that places the marker.
+pub(in crate::page) fn side(world: &NamedWorld, facing: Dart) -> Value {
     let graph = &world.graph;
     json!({
         "name": world.name,

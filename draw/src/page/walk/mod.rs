@@ -3,6 +3,7 @@
 
 mod data;
 
+pub(super) use data::side as side_json;
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
@@ -28,11 +29,13 @@ pub struct WalkPage<'a> {
 }
 
 const PAGE: &str = include_str!("../browser/walk.html");
+pub(super) const WALK_STATE_SCRIPT: &str = include_str!("../browser/walk_state.js");
 /// In the order of their dependencies; they share one scope.
-const SCRIPT: [&str; 8] = [
+const SCRIPT: [&str; 9] = [
     PAGE_SCRIPT,
     GRAPH_SCRIPT,
     MARKER_SCRIPT,
+    WALK_STATE_SCRIPT,
     include_str!("../browser/comparison.js"),
     include_str!("../browser/panel.js"),
     include_str!("../browser/percepts.js"),
@@ -59,7 +62,7 @@ pub fn page(page: &WalkPage) -> String {
 }
 
 /// The drawing of a world, without texts and without a marker, which the page draws.
-fn picture(world: &NamedWorld) -> String {
+pub(super) fn picture(world: &NamedWorld) -> String {
     let (title, caption, marker) = ("", "", &NoMarker as &dyn Marker);
     svg(&WorldPicture { start: None, marker, title, caption, ..WorldPicture::from(world) })
 }
