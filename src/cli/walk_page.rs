@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use toposlam_model::ambiguity::state_count;
+use toposlam_model::{ambiguity::state_count, format::named_world::NamedWorld, marker::Marker};
 
 use super::{CliError, output, text::grouped};
 use crate::page::{WalkPage, page};

@@ -7,7 +7,7 @@
 // map was returned.
 
 import assert from "node:assert/strict";
-import { LAPTOP, READER, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
+import { assertFitsPhone, assertReadable, visitAll } from "./visits.mjs";
 
 /** What the page shows now. */
 function shown(page) {
@@ -66,13 +66,7 @@ async function visit(page, kind, file) {
   await page.waitForFunction((end) => document.querySelector(".now").textContent === end, `step ${last} of ${last}`);
   await page.waitForFunction(() => document.querySelector("#play").textContent === "Play");
 
-  for (const [name, size] of [["desk", LAPTOP], ["phone", READER]]) {
-    for (const colorScheme of ["light", "dark"]) {
-      await page.setViewportSize(size);
-      await page.emulateMedia({ colorScheme });
-      await photograph(page, file, `${name}-${colorScheme}`);
-    }
-  }
+  await assertReadable(page, file, "end");
   await assertFitsPhone(page);
 }
 
