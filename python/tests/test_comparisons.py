@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -60,6 +61,19 @@ def test_the_smallest_worlds_of_each_marker():
     assert pair.compare().relation is not None
     assert "<svg" in pair._repr_svg_()
     assert ts.counterexample(marker="directional", cls="multigraph", edges=4).smallest is None
+
+
+def test_two_worlds_are_drawn_at_one_height():
+    """On one background, with their titles at the same height."""
+    one, other = ts.World.load("worlds/chain-5.toml"), ts.World.load("worlds/figure-1a.toml")
+    drawn = [world.draw(marker="directional").svg for world in (one, other)]
+    sizes = [[float(n) for n in re.search(r'viewBox="0 0 (\S+) (\S+)"', svg).groups()] for svg in drawn]
+    assert sizes[0][1] != sizes[1][1]
+    both = ts.WorldPair(one, other, "directional").draw().svg
+    (width, height), *_ = re.findall(r'viewBox="0 0 (\S+) (\S+)"', both)
+    assert float(width) == sizes[0][0] + sizes[1][0] and float(height) == max(sizes[0][1], sizes[1][1])
+    assert re.findall(r'translate\((\S+) 0\)">\s*<svg', both) == ["0", f"{sizes[0][0]:g}"]
+    assert '<rect width="100%" height="100%"' in both[: both.index("<g ")]
 
 
 def test_a_marker_of_your_own_that_is_a_known_one():

@@ -96,6 +96,9 @@ def test_tables_are_those_of_numpy_and_pandas(tmp_path):
     events = ts.read_log(tmp_path / "run.jsonl").events
     frame = events.pandas()
     assert isinstance(frame, pandas.DataFrame) and len(frame) == events.rows == 2 * run.moves + 1
+    report = ts.conform(tmp_path / "run.jsonl").pandas()
+    assert report["number"].tolist() == list(range(1, 2 * run.moves + 2))
+    assert report["door"].dropna().tolist() == frame["door"].dropna().tolist()
     doors = events.numpy()["door"]
     assert doors.dtype == float and numpy.nansum(doors) == sum(run.actions)
 
@@ -115,6 +118,8 @@ def test_plots(tmp_path):
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
     assert labels == ["depth_first", "certificate"]
     assert list(axes.get_lines()[1].get_ydata()) == [1.0, 2.2, 266 / 74]
+    assert {1, 2, 3} <= {int(tick) for tick in axes.get_xticks() if tick == int(tick)}
+    assert all(tick == int(tick) for tick in axes.get_xticks())
     axes = ts.plot_way(ts.read_log(tmp_path / "run.jsonl"))
     assert axes.get_title() == "run.jsonl"
 
