@@ -36,7 +36,6 @@ async function visit(page, kind, file) {
   assert.deepEqual(first.rows.map(([, , dart]) => dart), ["v0:0", "v1:0", "v2:0", "v3:0"]);
   const second = { wrong: ["1 door", "not possible"], guessed: ["2 doors", "2 doors"], alone: [] }[kind];
   assert.deepEqual([percepts(2)[1], percepts(3)[1]].filter(Boolean), second);
-  const first = await shown(page);
   assert.deepEqual([first.current, first.now], [0, `step 0 of ${last}`]);
   assert.equal(first.differing, difference);
   assert.equal(difference >= 0, kind === "wrong");
