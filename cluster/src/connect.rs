@@ -135,7 +135,9 @@ impl Connector<'_> {
             if begun.elapsed() > SOON && missing.iter().any(|&process| !named[process]) {
                 let names: Vec<String> = names();
                 (self.waiting)(&names);
-                missing.iter().for_each(|&process| named[process] = true);
+                for &process in &missing {
+                    named[process] = true;
+                }
             }
             thread::sleep(BETWEEN_LOOKS);
         }

@@ -156,7 +156,7 @@ impl Handshake {
             return Ok(None);
         }
         let (magic, length) = self.received[..HEAD].split_at(MAGIC.len());
-        let length = length.iter().fold(0, |length, &byte| length << 8 | usize::from(byte));
+        let length = length.iter().fold(0, |length, &byte| (length << 8) | usize::from(byte));
         if magic != MAGIC || length > LONGEST {
             return Err(ErrorKind::InvalidData.into());
         }

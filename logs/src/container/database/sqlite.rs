@@ -185,10 +185,13 @@ fn truncation(
 ) -> Result<Option<TruncationKind>, LogErrorKind> {
     let length = source.length();
     let head = source.read(0..length.min(100))?;
-    let number = |at: usize| head.get(at..at + 4).map(|bytes| bytes.iter().fold(0, big_endian));
-    let page = head.get(16..18).map(|bytes| bytes.iter().fold(0, big_endian));
+    let number = |bytes: Range<usize>| {
+        let big_endian = |number, &byte: &u8| (number << 8) | u64::from(byte);
+        head.get(bytes).map(|bytes| bytes.iter().fold(0_u64, big_endian))
+    };
+    let is_counted = number(24..28) == number(92..96);
     let (Some(page @ 1..), Some(counted @ 1..), true) =
-        (page, number(28), number(24) == number(92))
+        (number(16..18), number(28..32), is_counted)
     else {
         return Ok(None);
     };
@@ -201,10 +204,6 @@ fn truncation(
         Ordering::Greater => Some(TruncationKind::Continued { bytes: length - whole }),
         Ordering::Less => Some(TruncationKind::PagesMissing { counted, found: length / page }),
     })
-}
-
-fn big_endian(number: u64, byte: &u8) -> u64 {
-    number << 8 | u64::from(*byte)
 }
 
 /// Whether a journal or a write-ahead log lies beside a database.
