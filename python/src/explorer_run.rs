@@ -6,12 +6,8 @@ use toposlam_draw::{
     page::explorer_page,
 };
 use toposlam_model::{
-    check::other_world as find_other_world,
-    embedded_graph::Dart,
-    folding::SmallestWorld,
-    format::named_world::NamedWorld,
-    percept::Door,
-    world::Action,
+    check::other_world as find_other_world, embedded_graph::Dart, folding::SmallestWorld,
+    format::named_world::NamedWorld, percept::Door, world::Action,
 };
 
 use crate::{

@@ -37,11 +37,11 @@ mod _core {
     #[pymodule_export]
     use super::percept::Percept;
     #[pymodule_export]
-    use super::play::{random_page, world_page};
+    use super::play::{random_page, random_world, world_page};
     #[pymodule_export]
     use super::robot::Robot;
     #[pymodule_export]
-    use super::starts::{Start, Starts, count_starts, random_start};
+    use super::starts::{Start, Starts, count_starts};
     #[pymodule_export]
     use super::trail::Trail;
     #[pymodule_export]

@@ -2,9 +2,10 @@
 
 use pyo3::prelude::*;
 use toposlam_draw::page::{MOST_VERTICES, NoGame, games_of, play_page, random_games};
+use toposlam_model::format::named_world::NamedWorld;
 
 use crate::{
-    error::{error, guarded, interrupted},
+    error::{error, guarded, internal, interrupted},
     long_work::run_watched,
     starts::named_class,
     world::{CoreWorld, named_marker},
@@ -36,11 +37,27 @@ pub(crate) fn random_page(
     seed: u64,
     marker: &str,
 ) -> PyResult<String> {
-    let (marker, class) = (named_marker(py, marker)?, named_class(py, class_)?);
-    let page = run_watched(py, None, None, |watcher| {
-        Ok(play_page(&random_games(class, edges, seed, watcher)?, marker))
-    })?;
-    page.map_err(|none| match none {
+    let marker = named_marker(py, marker)?;
+    let games = games(py, class_, edges, seed)?;
+    guarded(py, || Ok(py.detach(|| play_page(&games, marker))))
+}
+
+/// The first world of the page of random worlds.
+#[pyfunction]
+pub(crate) fn random_world(
+    py: Python<'_>,
+    class_: &str,
+    edges: usize,
+    seed: u64,
+) -> PyResult<CoreWorld> {
+    let first = games(py, class_, edges, seed)?.into_iter().next();
+    first.map(CoreWorld).ok_or_else(|| internal(py))
+}
+
+fn games(py: Python<'_>, class: &str, edges: usize, seed: u64) -> PyResult<Vec<NamedWorld>> {
+    let class = named_class(py, class)?;
+    let games = run_watched(py, None, None, |watcher| random_games(class, edges, seed, watcher))?;
+    games.map_err(|none| match none {
         NoGame::Interrupted => interrupted(),
         none => error(py, "SizeError", none),
     })

@@ -3,8 +3,6 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
     check::judge_map,
     embedded_graph::{Dart, EmbeddedGraph},
@@ -226,36 +224,4 @@ pub(crate) fn count_starts(
         None
     })?;
     count.ok_or_else(interrupted)
-}
-
-/// One of the `count` starts of a class and a size, each equally likely. It is the one that `toposlam play` draws with
-/// this seed.
-#[pyfunction]
-pub(crate) fn random_start(
-    py: Python<'_>,
-    class_: &str,
-    edges: usize,
-    count: u64,
-    seed: u64,
-) -> PyResult<Start> {
-    let starts = enumeration(py, "start", class_, edges)?;
-    if count == 0 {
-        return Err(error(py, "SizeError", "there is no start to draw"));
-    }
-    let number = Xoshiro256PlusPlus::seed_from_u64(seed).random_range(0..count);
-    let drawn = run_watched(py, None, None, |watcher| {
-        let mut graphs = starts.graphs();
-        let mut left = number;
-        while !watcher.stop() {
-            match graphs.search(PATIENCE) {
-                SearchEnd::Found if left == 0 => return Some(graphs.graph().clone()),
-                SearchEnd::Found => left -= 1,
-                SearchEnd::Paused => {}
-                SearchEnd::Finished => return None,
-            }
-        }
-        None
-    })?;
-    let graph = drawn.ok_or_else(interrupted)?;
-    Ok(Start { graph: Arc::new(graph), number })
 }

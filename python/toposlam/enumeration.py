@@ -130,6 +130,13 @@ def random_world(edges: int, cls: str = "multigraph", seed: int = 1) -> World:
     <World corridor-5-seed-7: 5 vertices, 5 edges, genus 0, start v0:v1>
     """
     check_class(cls)
+    check_random(edges, seed)
+    core = _core.random_world(cls, edges, seed)
+    return World._of(core.with_start(core.start, f"{cls}-{edges}-seed-{seed}", ""))
+
+
+def check_random(edges: object, seed: object) -> None:
+    """Raises `SizeError` if no random world has these."""
     if isinstance(edges, bool) or not isinstance(edges, int) or not 1 <= edges <= MOST_RANDOM_EDGES:
         raise SizeError(
             f"a random world has from 1 to {MOST_RANDOM_EDGES} edges, not {edges!r}: all starts with as many "
@@ -137,5 +144,3 @@ def random_world(edges: int, cls: str = "multigraph", seed: int = 1) -> World:
         )
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
         raise SizeError(f"a seed is a number from 0 to 2^64 - 1, not {seed!r}")
-    start = _core.random_start(cls, edges, count_starts(edges, cls), seed)
-    return World._of(start.world(f"{cls}-{edges}-seed-{seed}"))

@@ -7,13 +7,10 @@ import os
 from pathlib import Path
 
 from . import _core
-from .errors import PictureError, SizeError, UnknownMarkerError
+from .enumeration import check_random
+from .errors import PictureError, UnknownMarkerError
 from .limits import check_unused
 from .worlds import World, world_of
-
-MOST_EDGES = 8
-"""The most edges of a random world."""
-
 
 class Page:
     """A page for a browser: one document that needs no network. A notebook shows it."""
@@ -68,8 +65,5 @@ def play(
         return Page(_core.world_page(given._core, given.facing(), marker))
     edges = 6 if edges is None else edges
     seed = 1 if seed is None else seed
-    if isinstance(edges, bool) or not isinstance(edges, int) or not 1 <= edges <= MOST_EDGES:
-        raise SizeError(f"edges is a number from 1 to {MOST_EDGES}, not {edges!r}")
-    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
-        raise SizeError(f"seed is a number from 0, not {seed!r}")
+    check_random(edges, seed)
     return Page(_core.random_page("corridor" if cls is None else cls, edges, seed, marker))
