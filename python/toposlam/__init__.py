@@ -9,15 +9,7 @@
 
 from . import errors
 from ._core import Percept, Robot
-from .checks import (
-    CheckReport,
-    Failure,
-    SizeReport,
-    check,
-    check_shard,
-    merge,
-    shards,
-)
+from .checks import CheckReport, SizeReport, check, check_shard, merge, shards
 from .comparisons import (
     Comparison,
     Counterexamples,
@@ -29,6 +21,7 @@ from .comparisons import (
 )
 from .enumeration import CLASSES, count_starts, count_worlds, random_world, starts, worlds
 from .errors import ExplorerError, ToposlamError, WorldError
+from .failures import Failure
 from .logs import ConformReport, Divergence, Log, LogEvent, Table, conform, read_log
 from .markers import MARKERS, OwnPercept
 from .play import Page, play

@@ -29,7 +29,7 @@ from .explorers import Answer, Clock, Explorer, check_explorer, judged
 from .failures import Failure, failure_of, place
 from .limits import MAX_MOVES, SECONDS, check_limit, check_run_limits, check_unused
 from .logs import Table
-from .markers import Marker, check_marker, drawn, marker_name, sensed
+from .markers import Marker, check_marker, marker_name, sensed
 from .progress import Advance, bar
 from .worlds import World, world_of
 

@@ -108,6 +108,9 @@ def failure_of(
     actions = tuple(robot.actions)
     if isinstance(error, GuessedError):
         error._walk = (world, marker, actions)
+    if robot.refusal is not None:
+        # The run ended there, whatever the explorer returned.
+        return Failure(world, error, actions, number, marker)
     try:
         map_, pose = mapped(answer, "map")
     except (ToposlamError, TypeError, ValueError, OverflowError):

@@ -12,6 +12,7 @@ from .errors import PictureError, UnknownMarkerError
 from .limits import check_unused
 from .worlds import World, world_of
 
+
 class Page:
     """A page for a browser: one document that needs no network. A notebook shows it."""
 

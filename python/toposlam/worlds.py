@@ -542,8 +542,8 @@ def world_of(value: object) -> World:
 
 
 def other_world(world: World, marker: object, actions: tuple[int | str, ...]) -> tuple[World | None, bool]:
-    """The smallest other world in which a robot that does the same senses the same, and whether it is known to be
-    the smallest."""
+    """The smallest other world in which a robot that does the same senses the same, and whether it is known
+    to be the smallest."""
     if not isinstance(marker, str):
         return None, False
     doors = [action for action in actions if isinstance(action, int)]
