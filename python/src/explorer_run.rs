@@ -11,7 +11,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    error::{error, guarded, interrupted},
+    error::{error, guarded},
     long_work::run_watched,
     world::{CoreWorld, named_marker},
 };
