@@ -110,9 +110,6 @@ impl Connector<'_> {
                     Err(HandshakeError::Stream) => {}
                 }
             }
-            for stream in &mut streams {
-                stream.take_if(|stream| is_broken(stream));
-            }
             for (lower, calls) in calls.iter_mut().enumerate() {
                 let is_called =
                     handshakes.iter().any(|handshake| handshake.called() == Some(lower));
@@ -122,8 +119,12 @@ impl Connector<'_> {
             }
             let missing = |process: &usize| *process != self.process && streams[*process].is_none();
             let missing: Vec<usize> = (0..streams.len()).filter(missing).collect();
+            // A stream that broke since is a process that is lost, not one that is missing: it is not called again.
             if missing.is_empty() {
                 return Ok(streams);
+            }
+            for stream in &mut streams {
+                stream.take_if(|stream| is_broken(stream));
             }
             if self.watch.stop() {
                 return Err(ConnectError::Interrupted);

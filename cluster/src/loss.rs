@@ -26,14 +26,15 @@ pub(crate) fn on_loss(lost: impl Fn(usize) + Send + Sync + 'static) {
         let thread = thread::current();
         match thread.name().and_then(other_process) {
             _ if DONE.load(Ordering::Relaxed) => {}
-            None => usual(panic),
-            Some(_) if LOST.swap(true, Ordering::Relaxed) => {}
-            Some(process) => {
+            Some(process) if !LOST.swap(true, Ordering::Relaxed) => {
                 thread::sleep(LINGER);
                 if !DONE.load(Ordering::Relaxed) {
                     lost(process);
                 }
             }
+            // Another thread panics because of the loss, which ends this process before it goes on.
+            _ if LOST.load(Ordering::Relaxed) => thread::sleep(2 * LINGER),
+            _ => usual(panic),
         }
     }));
 }
