@@ -113,12 +113,12 @@ impl ExploreArguments {
 fn verdict(outcome: Outcome, run: &ReportedRun, moves: u64, shortest: Option<usize>) -> String {
     let moves_text = counted(moves as usize, "move");
     let Some(message) = &run.message else {
-        let mut text = format!("holds: the map and the pose are right, after {moves_text}");
-        if let Some(shortest) = shortest {
+        let ratio = shortest.map(|shortest| {
             let ratio = moves as f64 / shortest as f64;
-            text += &format!("; {ratio:.2} times the {shortest} of the certificate");
-        }
-        return text;
+            format!("; {ratio:.2} times the {shortest} of the certificate")
+        });
+        let ratio = ratio.unwrap_or_default();
+        return format!("holds: the map and the pose are right, after {moves_text}{ratio}");
     };
     let it = message.strip_prefix("The explorer ").unwrap_or(message);
     let stopped = it.strip_suffix(&format!(" after {moves_text}")).unwrap_or(it);
