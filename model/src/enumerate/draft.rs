@@ -76,7 +76,7 @@ struct Decision {
     rivals: u64,
 }
 
-/// The end of a [search](Decisions::search).
+/// The end of a search for the next graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchEnd {
     Found,
