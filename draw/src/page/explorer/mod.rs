@@ -47,7 +47,6 @@ pub fn explorer_page(ending: &str, run: &ExplorerRun) -> String {
         &[
             ("ending", &escaped(ending)),
             ("style", PAGE_STYLE),
-            ("name", &escaped(&run.world.name)),
             ("picture", &picture(run.world)),
             ("beside", &panel),
             ("column", &column),
