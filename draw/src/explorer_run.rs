@@ -187,3 +187,50 @@ fn print_list(out: &mut dyn Write, title: &str, world: &NamedWorld) -> io::Resul
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::{marker::Directional, percept::Door};
+
+    use super::*;
+
+    fn chain(name: &str, edges: usize) -> NamedWorld {
+        NamedWorld::numbered(name, "", EmbeddedGraph::chain(edges), Some(Dart(0)))
+    }
+
+    /// The text of a run in a chain of two edges, to the middle and on.
+    fn printed(doors: &[u32], beside: Option<(Beside, &NamedWorld)>) -> String {
+        let world = chain("chain", 2);
+        let actions: Vec<_> = doors.iter().map(|&door| Action::Take(Door(door))).collect();
+        let marker = &Directional;
+        let run = ExplorerRun { world: &world, marker, actions: &actions, percepts: None, beside };
+        let mut out = Vec::new();
+        run.print(&mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn the_first_step_that_contradicts_the_map_is_named() {
+        let map = chain("map", 1);
+        let text = printed(&[0, 1], Some((Beside::ReturnedMap, &map)));
+        assert!(text.contains("contradict it: at step 1, it has 1 door."), "{text}");
+        // After the first step, only the end that was not seen differs.
+        let map = chain("map", 3);
+        let text = printed(&[0], Some((Beside::ReturnedMap, &map)));
+        assert!(text.contains("it is a wrong guess"), "{text}");
+        let text = printed(&[0, 1, 0], Some((Beside::ReturnedMap, &chain("map", 2))));
+        assert!(!text.contains("contradict") && !text.contains("wrong guess"), "{text}");
+    }
+
+    #[test]
+    fn of_a_long_run_the_beginning_and_the_end_are_printed() {
+        let steps = |text: &str| text.lines().filter(|line| line.contains(" door")).count();
+        let whole = printed(&[0; 39], None);
+        assert!(!whole.contains("not printed"), "{whole}");
+        assert_eq!(steps(&whole), 40);
+        let long = printed(&[0; 59], None);
+        assert!(long.contains("20 steps are not printed"), "{long}");
+        assert_eq!(steps(&long), 40);
+        assert!(long.contains("\n    59  0 "), "{long}");
+    }
+}

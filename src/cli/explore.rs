@@ -162,6 +162,7 @@ impl ExploreArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let world = input::read_world(&self.world)?;
         if let Some(command) = &self.explorer.explorer {
+            self.explorer.check_one_run()?;
             let facing = input::start_of(&world, self.start.as_deref())?;
             self.check_outputs(&world)?;
             return self.explore_by(command, &world, facing, out);

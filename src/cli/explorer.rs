@@ -9,6 +9,8 @@ mod run;
 
 use std::time::Duration;
 
+use super::CliError;
+
 pub(super) use fault::ExplorerFault;
 pub(super) use process::{ExplorerCommand, ExplorerProcess};
 pub(super) use reported_run::ReportedRun;
@@ -46,6 +48,17 @@ pub(super) struct ExplorerLimits {
 }
 
 impl ExplorerOptions {
+    /// Checks that no limit is given that one run does not have.
+    ///
+    /// # Errors
+    /// Returns an error if restarts are limited.
+    pub(super) fn check_one_run(&self) -> Result<(), CliError> {
+        if self.limit.iter().any(|limit| matches!(limit, ExplorerLimit::Restarts(_))) {
+            return Err(CliError::at("--limit", "one run has no restarts"));
+        }
+        Ok(())
+    }
+
     pub(super) fn limits(&self) -> ExplorerLimits {
         let timeout = Duration::from_secs(10);
         let mut limits = ExplorerLimits { timeout, moves: 100_000, restarts: 10 };

@@ -88,6 +88,22 @@ fn assert_connected(connected: Vec<JoinHandle<Result<Streams, ConnectError>>>) {
     }
 }
 
+/// It is lost, which the work notices. It is not waited for: it has ended, and does not come back.
+#[test]
+fn a_process_that_ends_when_all_are_connected_is_not_waited_for() {
+    let hosts = hosts(2);
+    let listener = TcpListener::bind(hosts.address(0)).unwrap();
+    let second = connect_within(&hosts, 1, Duration::from_secs(5));
+    let (mut stream, _) = listener.accept().unwrap();
+    read_greeting(&mut stream, 1);
+    stream.write_all(&greeting(0)).unwrap();
+    let mut confirmation = [0];
+    stream.read_exact(&mut confirmation).unwrap();
+    stream.write_all(&confirmation).unwrap();
+    drop((stream, listener));
+    assert!(second.join().unwrap().unwrap()[0].is_some());
+}
+
 #[test]
 fn strangers_that_send_nothing_delay_nobody() {
     let hosts = hosts(3);

@@ -183,13 +183,12 @@ impl<'o> CheckReport<'o> {
                 print_paragraph(self.out, &format!("The start, as a world file for `{explore}`:"))?;
             }
             FailedRun::Explorer(run) => {
-                let message = run.message.as_deref().unwrap_or_default();
-                let it = message.strip_prefix("The explorer ").unwrap_or(message);
-                let moves = counted(moves.unwrap_or_default() as usize, "move");
-                let end = if it.ends_with('?') { "" } else { "." };
-                let stopped = it.strip_suffix(&format!(" after {moves}")).unwrap_or(it);
+                let moves = moves.unwrap_or_default();
+                let clause = run.clause(moves).unwrap_or_default();
+                let end = if clause.ends_with('?') { "" } else { "." };
+                let moves = counted(moves as usize, "move");
                 let text = format!(
-                    "The first start on which the explorer {what}. After {moves}, it {stopped}{end}"
+                    "The first start on which the explorer {what}. After {moves}, it {clause}{end}"
                 );
                 print_paragraph(self.out, &text)?;
                 writeln!(self.out)?;

@@ -112,7 +112,7 @@ impl ExploreArguments {
 /// The verdict, in a paragraph.
 fn verdict(outcome: Outcome, run: &ReportedRun, moves: u64, shortest: Option<usize>) -> String {
     let moves_text = counted(moves as usize, "move");
-    let Some(message) = &run.message else {
+    let Some(clause) = run.clause(moves) else {
         let ratio = shortest.map(|shortest| {
             let ratio = moves as f64 / shortest as f64;
             format!("; {ratio:.2} times the {shortest} of the certificate")
@@ -120,11 +120,9 @@ fn verdict(outcome: Outcome, run: &ReportedRun, moves: u64, shortest: Option<usi
         let ratio = ratio.unwrap_or_default();
         return format!("holds: the map and the pose are right, after {moves_text}{ratio}");
     };
-    let it = message.strip_prefix("The explorer ").unwrap_or(message);
-    let stopped = it.strip_suffix(&format!(" after {moves_text}")).unwrap_or(it);
     let word = match outcome {
         Outcome::Incomplete => "not known",
         _ => "violated",
     };
-    format!("{word}: after {moves_text}, the explorer {stopped}")
+    format!("{word}: after {moves_text}, the explorer {clause}")
 }

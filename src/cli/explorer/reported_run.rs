@@ -18,7 +18,7 @@ use crate::{
     cli::{
         CliError, output,
         progress::StopSignal,
-        text::{capital, print_indented},
+        text::{capital, counted, print_indented},
         walk_page, write_drawing,
     },
     explorer_run::{Beside, ExplorerRun},
@@ -55,6 +55,14 @@ impl ReportedRun {
         });
         let message = result.err().map(|fault| capital(&format!("the explorer {fault}")));
         Self { message, actions, map, other_world: None, stderr }
+    }
+
+    /// What is wrong, as a clause without its subject, the explorer, and without the number of moves, which stand
+    /// before it.
+    pub(in crate::cli) fn clause(&self, moves: u64) -> Option<&str> {
+        let message = self.message.as_deref()?;
+        let it = message.strip_prefix("The explorer ").unwrap_or(message);
+        Some(it.strip_suffix(&format!(" after {}", counted(moves as usize, "move"))).unwrap_or(it))
     }
 
     /// Searches for the smallest other world with the same run. There is one if the run is a guess.

@@ -87,7 +87,7 @@ pub fn games_of(world: &NamedWorld, facing: Dart) -> Vec<NamedWorld> {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::isomorphism::code;
+    use toposlam_model::{embedded_graph::EmbeddedGraph, isomorphism::code};
 
     use super::*;
 
@@ -123,6 +123,4 @@ mod tests {
             assert_eq!(games[0].start, Some(facing));
         }
     }
-
-    use toposlam_model::embedded_graph::EmbeddedGraph;
 }
