@@ -70,7 +70,7 @@ pub(super) struct Decisions {
 #[derive(Clone, Copy, Debug)]
 struct Decision {
     dart: Option<Dart>,
-    answer: Option<Answer>,
+    answer: Answer,
     untried: Answers,
     /// The rivals of the draft before.
     rivals: u64,
@@ -88,37 +88,37 @@ pub enum SearchEnd {
 
 impl Decisions {
     /// Changes the draft, which must be as this left it, to the next one with `edges` edges. When it is finished,
-    /// the draft is what it was at first. A step changes one answer.
+    /// the draft is what it was at first. A step makes or undoes one decision.
     pub(super) fn search(&mut self, draft: &mut Draft, edges: usize, steps: u64) -> SearchEnd {
-        for _ in 0..steps {
-            if !self.goes_back {
-                if draft.edges == edges {
-                    self.goes_back = true;
-                    return SearchEnd::Found;
-                }
+        'steps: for _ in 0..steps {
+            let (dart, mut untried, rivals) = if self.goes_back {
+                let Some(Decision { dart, answer, untried, rivals }) = self.made.pop() else {
+                    return SearchEnd::Finished;
+                };
+                draft.rivals = rivals;
+                draft.undo(dart, answer);
+                (dart, untried, rivals)
+            } else if draft.edges == edges {
+                self.goes_back = true;
+                return SearchEnd::Found;
+            } else {
                 let dart = draft.lowest_free();
                 // The start vertex comes first.
-                if dart.is_some() || draft.vertices == 0 {
-                    let (untried, rivals) = (draft.answers(dart), draft.rivals);
-                    self.made.push(Decision { dart, answer: None, untried, rivals });
-                }
-            }
-            let Some(last) = self.made.last_mut() else {
-                self.goes_back = true;
-                return SearchEnd::Finished;
+                let is_open = dart.is_some() || draft.vertices == 0;
+                let untried = if is_open { draft.answers(dart) } else { Answers::default() };
+                (dart, untried, draft.rivals)
             };
-            if let Some(answer) = last.answer.take() {
-                draft.rivals = last.rivals;
-                draft.undo(last.dart, answer);
+            while let Some(answer) = untried.take_first() {
+                draft.decide(dart, answer);
+                if draft.may_be_least() {
+                    self.made.push(Decision { dart, answer, untried, rivals });
+                    self.goes_back = false;
+                    continue 'steps;
+                }
+                draft.rivals = rivals;
+                draft.undo(dart, answer);
             }
-            if let Some(answer) = last.untried.take_first() {
-                draft.decide(last.dart, answer);
-                last.answer = Some(answer);
-                self.goes_back = !draft.may_be_least();
-            } else {
-                self.made.pop();
-                self.goes_back = true;
-            }
+            self.goes_back = true;
         }
         SearchEnd::Paused
     }
