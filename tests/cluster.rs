@@ -12,7 +12,7 @@ use std::{
     fs,
     io::Write,
     net::{Ipv4Addr, TcpListener, TcpStream},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Command, Output, Stdio},
     thread::sleep,
     time::Duration,
@@ -71,11 +71,14 @@ impl Stage {
         hosts.lines().nth(process).unwrap().to_owned()
     }
 
-    /// Starts one process with one thread.
-    fn start_one(&self, command: &str, process: usize) -> Process {
+    /// One process with one thread.
+    fn command(&self, command: &str, process: usize) -> Command {
         let hosts = self.path("hosts.txt");
-        let own = format!("{command} --threads 1 --hosts {hosts} --process {process}");
-        Process::start(&mut toposlam(&own))
+        toposlam(&format!("{command} --threads 1 --hosts {hosts} --process {process}"))
+    }
+
+    fn start_one(&self, command: &str, process: usize) -> Process {
+        Process::start(&mut self.command(command, process))
     }
 
     fn start(&self, command: &str) -> Vec<Process> {
@@ -203,23 +206,31 @@ fn a_check_goes_on_with_two_processes_after_one_of_three_was_killed() {
 #[test]
 fn if_a_process_ends_the_others_end_and_process_0_prints_what_it_has() {
     let stage = Stage::new("first", 2);
-    let mut processes = stage.start(LONG);
-    sleep(Duration::from_millis(500));
+    let journal = stage.path("journal");
+    let mut processes = stage.start(&format!("{LONG} --journal {journal}"));
+    let journal = Path::new(&journal).join("7-edges.journal");
+    let recorded = || fs::read_to_string(&journal).map_or(0, |text| text.lines().count());
+    until("some units are recorded", 60, || recorded() > 10);
     processes[0].signal("-KILL");
     let (code, _, error) = ended(&processes.remove(1).ends_within(5));
     let message = format!("the connection to process 0 ({}) is lost", stage.address(0));
     assert!(code == Some(3) && error.contains(&message), "{error}");
-    for interrupted in 0..2 {
-        let stage = Stage::new(&format!("interrupted-{interrupted}"), 2);
-        let processes = stage.start(&LONG.replace("--edges 7", "--edges 3..=7"));
-        sleep(Duration::from_millis(700));
+    // As soon as a size is printed, the work of the next one is listed; later, it is done.
+    for (interrupted, later) in [(0, 0), (1, 0), (0, 500), (1, 500)] {
+        let stage = Stage::new(&format!("interrupted-{interrupted}-{later}"), 2);
+        let command = LONG.replace("--edges 7", "--edges 3..=7");
+        let path = stage.folder.join("out");
+        let mut first = stage.command(&command, 0);
+        let first = Process::start(first.stdout(fs::File::create(&path).unwrap()));
+        let processes = [first, stage.start_one(&command, 1)];
+        let printed = || fs::read_to_string(&path).unwrap();
+        let six = "    6      9,436       110,410       0";
+        until("six edges are checked", 60, || printed().contains(six));
+        sleep(Duration::from_millis(later));
         processes[interrupted].signal("-INT");
-        let all = processes.into_iter().map(|process| ended(&process.ends_within(5)));
-        let all: Vec<_> = all.collect();
+        let all = processes.map(|process| ended(&process.ends_within(5)));
         assert_eq!([all[0].0, all[1].0], [Some(3), Some(3)], "{all:?}");
-        let out = &all[0].1;
-        assert!(out.contains("    3         20            74       0"), "{out}");
-        assert_eq!(out.contains("interrupted"), interrupted == 0, "{out}");
+        assert_eq!(printed().contains("interrupted"), interrupted == 0, "{}", printed());
         assert!(all[1 - interrupted].2.contains("is lost"), "{all:?}");
     }
 }

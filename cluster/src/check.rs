@@ -46,8 +46,10 @@ impl ClusterProcess {
         watch: &dyn Watch,
     ) -> Result<(Tally, Vec<ThreadUse>), ClusterError> {
         let pieces = algorithm.pieces(sweep, watch);
-        // The pieces of a watch that stops are not all.
-        watch.check_stop().map_err(|_| ClusterError::Interrupted)?;
+        if watch.stop() {
+            // The pieces are not all.
+            return self.interrupted(algorithm, PartTally::default());
+        }
         let job = Arc::new(CheckJob { algorithm, pieces });
         let pieces = &job.pieces;
         let mut counts = PartTally::default();
@@ -72,13 +74,22 @@ impl ClusterProcess {
             let all = self.share(self.is_first().then(|| counts.clone()), watch)?;
             Ok((all, end.threads))
         });
-        let (counts, threads) = match shared {
-            Err(ClusterError::Interrupted) if self.is_first() => {
-                counts.interrupted = true;
-                (counts, Vec::new())
-            }
-            shared => shared?,
-        };
-        Ok((algorithm.finished_pieces(counts), threads))
+        match shared {
+            Err(ClusterError::Interrupted) => self.interrupted(algorithm, counts),
+            shared => shared.map(|(counts, threads)| (algorithm.finished_pieces(counts), threads)),
+        }
+    }
+
+    /// What is known when the watch stops this process: process 0 has the counts so far.
+    fn interrupted(
+        &self,
+        algorithm: MappingAlgorithm,
+        mut counts: PartTally,
+    ) -> Result<(Tally, Vec<ThreadUse>), ClusterError> {
+        if !self.is_first() {
+            return Err(ClusterError::Interrupted);
+        }
+        counts.interrupted = true;
+        Ok((algorithm.finished_pieces(counts), Vec::new()))
     }
 }
