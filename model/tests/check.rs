@@ -71,7 +71,7 @@ fn a_start_with_more_states_than_the_budget_is_given_up() {
         assert_eq!(all.limit.is_none(), is_complete, "{edges} {budget}");
     }
     let tally =
-        check_worlds(&[graph], None, Algorithm1Run::default, RunChoices::All { budget: 3 }, &());
+        check_worlds(&[(graph, None)], Algorithm1Run::default, RunChoices::All { budget: 3 }, &());
     assert_eq!((tally.starts, tally.mapped, tally.over_budget), (1, 1, 1));
 }
 

@@ -4,6 +4,7 @@ mod add;
 mod estimate;
 mod explorer_sweep;
 mod explorer_tally;
+mod failed_starts;
 mod journal;
 mod line;
 mod report;
@@ -48,6 +49,8 @@ use super::{
 use crate::picture::WorldPicture;
 use estimate::EstimateOptions;
 use explorer_sweep::ExplorerSweep;
+use explorer_tally::ExplorerTally;
+use failed_starts::FailedStarts;
 use journal::{CheckJournal, JournalHeader};
 use line::{FailedRun, FailureLine, SizeLine};
 use report::CheckReport;
@@ -77,6 +80,8 @@ Examples:
   toposlam check --explorer ./mine --edges 5  your own program
   toposlam check --explorer ./mine --failed run.html
                                               the run on the first failed start
+  toposlam check --explorer ./mine --failed failed --failed-first
+                                              those that failed before, then all
   toposlam check --edges 10 --estimate        what a check will take
   toposlam check --edges 9 --journal nine     a check that can be killed
   toposlam check --edges 10 --hosts hosts.txt --process 0
@@ -138,9 +143,16 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "FILE")]
     worst: Option<PathBuf>,
 
-    /// Write the first start that was not mapped: a world file, or a picture (.svg, .png)
+    /// Write the first start that was not mapped: a world file, or a picture (.svg, .png). With
+    /// --explorer also a page (.html) of the run, or with a name without ending a folder of the first 100
+    /// of each size
     #[arg(long, value_name = "FILE")]
     failed: Option<PathBuf>,
+
+    /// Check the starts in the folder of --failed first. If one is still not mapped, no others are
+    /// checked
+    #[arg(long, requires = "failed", requires = "explorer", conflicts_with = "keep_going")]
+    failed_first: bool,
 
     #[command(flatten)]
     pub(super) threads: ThreadOption,
@@ -221,7 +233,29 @@ enum Work {
     All(Check),
     Enumerated(Enumeration),
     /// With one start of each, or all.
-    Listed(Vec<EmbeddedGraph>, Option<Dart>),
+    Listed(Vec<(EmbeddedGraph, Option<Dart>)>),
+}
+
+/// What the checks of some sizes found.
+#[derive(Default)]
+struct Checked {
+    worst: Option<WorstStart>,
+    /// The first start that was mapped wrongly, and the first on which a limit was reached.
+    first_unmapped: [Option<FailureLine>; 2],
+    /// Those on which an explorer failed or reached a limit.
+    unmapped: Vec<NamedWorld>,
+    cases: Vec<CiCase>,
+    interrupted: bool,
+    /// Whether starts are left out.
+    is_cut: bool,
+    has_unmapped: bool,
+}
+
+/// What the check of one size found.
+struct CheckedSize {
+    line: SizeLine,
+    worst: Option<WorstStart>,
+    unmapped: Vec<NamedWorld>,
 }
 
 impl CheckArguments {
@@ -230,9 +264,11 @@ impl CheckArguments {
         if self.add {
             return self.add_shards(out);
         }
+        let folder = self.failed_folder()?;
         let mapper = if let Some(command) = &self.explorer.explorer {
+            let most_kept = folder.as_ref().map_or(0, |_| failed_starts::MOST);
             let (limits, marker) = (self.explorer.limits(), self.marker);
-            Mapper::Explorer(ExplorerSweep { command, limits, marker })
+            Mapper::Explorer(ExplorerSweep { command, limits, marker, most_kept })
         } else {
             let algorithm = algorithm_for(self.algorithm, self.marker, self.choices)?;
             Mapper::Algorithm(algorithm, self.choices)
@@ -244,18 +280,34 @@ impl CheckArguments {
             }
         };
         output::check_world_place(&self.worst, work.values().all(Work::is_simple))?;
-        output::check_place(&self.failed, &["toml", "json", "dot", "svg", "png", "html"])?;
-        let is_page = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "html");
-        if self.failed.as_ref().is_some_and(is_page) && self.explorer.explorer.is_none() {
-            let cause = "a page shows the run of a program; it needs --explorer";
-            return Err(CliError::at("--failed", cause));
-        }
         match mapper {
             Mapper::Algorithm(algorithm, _) if self.estimate.estimate.is_some() => {
                 self.print_estimates(&work, algorithm, out)
             }
-            mapper => self.check(&mapper, work, out),
+            mapper => self.check(&mapper, work, folder, out),
         }
+    }
+
+    /// The folder of `--failed`, if it is one.
+    ///
+    /// # Errors
+    /// Returns an error if nothing can be written there, or if a start in it cannot be read.
+    fn failed_folder(&self) -> Result<Option<FailedStarts>, CliError> {
+        let Some(path) = &self.failed else { return Ok(None) };
+        let has_explorer = self.explorer.explorer.is_some();
+        if has_explorer && FailedStarts::is_folder(path) {
+            return FailedStarts::open(path, self.failed_first).map(Some);
+        }
+        if self.failed_first {
+            let cause = "a file has one start; the starts of a folder, as in --failed failed, can be checked first";
+            return Err(CliError::at("--failed", cause));
+        }
+        output::check_place(path, &["toml", "json", "dot", "svg", "png", "html"])?;
+        if path.extension().is_some_and(|ending| ending == "html") && !has_explorer {
+            let cause = "a page shows the run of a program; it needs --explorer";
+            return Err(CliError::at("--failed", cause));
+        }
+        Ok(None)
     }
 
     /// Checks each size until a map is wrong.
@@ -263,8 +315,14 @@ impl CheckArguments {
         &self,
         mapper: &Mapper,
         work: BTreeMap<usize, Work>,
+        folder: Option<FailedStarts>,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
+        if let (Mapper::Explorer(sweep), Some(folder)) = (mapper, &folder)
+            && let Some(outcome) = self.check_failed_first(sweep, folder, out)?
+        {
+            return Ok(outcome);
+        }
         let mut cluster = self.join_cluster()?;
         let is_first = cluster.as_ref().is_none_or(|cluster| cluster.is_first());
         let out = &mut SharedOutput::new(out, is_first);
@@ -274,61 +332,129 @@ impl CheckArguments {
             Mapper::Explorer(_) => None,
         };
         let mut report = CheckReport::new(out, self.json, order);
-        let mut worst: Option<WorstStart> = None;
-        // The first start that was mapped wrongly, and the first on which a limit was reached.
-        let mut unmapped: [Option<FailureLine>; 2] = [None, None];
-        let mut cases = Vec::new();
-        let mut sizes = work.into_iter();
-        let (mut is_done, mut all_mapped) = (true, true);
-        for (edges, work) in sizes.by_ref() {
-            let begun = Instant::now();
-            let (line, of_size) =
-                self.check_size(self.line(edges), &work, mapper, cluster.as_mut())?;
-            is_done = !line.interrupted;
-            all_mapped &= line.failed == 0 && line.unknown.unwrap_or_default() == 0;
-            cases.push(line.ci_case().begun(begun));
-            for (first, found) in unmapped.iter_mut().zip([&line.failure, &line.limit]) {
-                *first = first.take().or_else(|| found.clone());
-            }
-            report.size(line)?;
-            if let Some(cluster) = &mut cluster {
-                report.threads(cluster, &counted(edges, "edge"))?;
-            }
-            let moves = |start: &Option<WorstStart>| start.as_ref().map(|start| start.moves);
-            if moves(&of_size) > moves(&worst) {
-                worst = of_size;
-            }
-            if !is_done || (!all_mapped && !self.keep_going) {
-                break;
-            }
-        }
+        let mut sizes = work.into_iter().map(|(edges, work)| (self.line(edges), work));
+        let mut checked = self.check_sizes(mapper, &mut sizes, &mut cluster, &mut report)?;
         let outcome = report.verdict(Some(start.elapsed()))?;
-        if let Some(cluster) = cluster.filter(|_| is_done) {
+        if let Some(cluster) = cluster.filter(|_| !checked.interrupted) {
             cluster.close();
         }
         if !is_first {
             return Ok(outcome);
         }
-        if !all_mapped {
-            let names: Vec<_> = sizes.map(|(edges, _)| self.line(edges).name()).collect();
+        if checked.has_unmapped {
+            let names: Vec<_> = sizes.map(|(line, _)| line.name()).collect();
             if !names.is_empty() {
                 remark!("worlds with more edges are not checked; --keep-going checks them");
             }
-            CiCase::add_not_checked(&mut cases, names.into_iter(), self.from.as_deref());
+            CiCase::add_not_checked(&mut checked.cases, names.into_iter(), self.from.as_deref());
         }
-        let explorer = self.explorer.explorer.as_ref().and_then(ExplorerCommand::file);
-        let written = explorer.or(self.failed.as_deref().filter(|_| !all_mapped));
-        self.ci.write("check", &cases, written)?;
-        if let Some(path) = &self.worst {
-            write_worst(path, worst)?;
-        }
-        if let Some(path) = &self.failed {
-            match unmapped.iter().flatten().next() {
-                Some(failure) => self.write_failed(path, failure)?,
-                None => remark!("{} is not written: each start was mapped", path.display()),
+        self.write_outputs(checked, folder)?;
+        Ok(outcome)
+    }
+
+    /// Checks the starts that were not mapped before. Returns the outcome if one of them still is not.
+    fn check_failed_first(
+        &self,
+        sweep: &ExplorerSweep,
+        folder: &FailedStarts,
+        out: &mut dyn Write,
+    ) -> Result<Option<Outcome>, CliError> {
+        let mapper = Mapper::Explorer(ExplorerSweep { most_kept: usize::MAX, ..*sweep });
+        let start = Instant::now();
+        let mut rows = Vec::new();
+        let mut report = CheckReport::new(&mut rows, self.json, None);
+        let mut all = Checked::default();
+        for (edges, work) in folder.work() {
+            let from = Some(folder.name());
+            let line = SizeLine { from, class: None, ..self.line(edges) };
+            let mut size = std::iter::once((line, work));
+            let checked = self.check_sizes(&mapper, &mut size, &mut None, &mut report)?;
+            if !checked.is_cut {
+                folder.keep_only(edges, &checked.unmapped)?;
+            }
+            all.cases.extend(checked.cases);
+            all.has_unmapped |= checked.has_unmapped;
+            if checked.interrupted {
+                all.interrupted = true;
+                break;
             }
         }
-        Ok(outcome)
+        if !all.has_unmapped && !all.interrupted {
+            if folder.count() > 0 {
+                let starts = counted(folder.count(), "start");
+                remark!("{}: {starts} that failed before, now mapped", folder.name());
+            }
+            return Ok(None);
+        }
+        let outcome = report.verdict(Some(start.elapsed()))?;
+        out.write_all(&rows)?;
+        remark!("other starts are not checked: not all that failed before are mapped");
+        let explorer = self.explorer.explorer.as_ref().and_then(ExplorerCommand::file);
+        self.ci.write("check", &all.cases, explorer)?;
+        Ok(Some(outcome))
+    }
+
+    fn check_sizes(
+        &self,
+        mapper: &Mapper,
+        sizes: &mut dyn Iterator<Item = (SizeLine, Work)>,
+        cluster: &mut Option<Box<dyn ClusterSession>>,
+        report: &mut CheckReport,
+    ) -> Result<Checked, CliError> {
+        let mut checked = Checked::default();
+        for (line, work) in sizes {
+            let edges = line.edges;
+            let begun = Instant::now();
+            let CheckedSize { line, worst, unmapped } =
+                self.check_size(line, &work, mapper, cluster.as_mut())?;
+            checked.interrupted = line.interrupted;
+            checked.is_cut |= line.interrupted || line.stopped == Some(true);
+            checked.has_unmapped |= line.failed > 0 || line.unknown.unwrap_or_default() > 0;
+            checked.unmapped.extend(unmapped);
+            checked.cases.push(line.ci_case().begun(begun));
+            for (first, found) in
+                checked.first_unmapped.iter_mut().zip([&line.failure, &line.limit])
+            {
+                *first = first.take().or_else(|| found.clone());
+            }
+            report.size(line)?;
+            if let Some(cluster) = cluster {
+                report.threads(cluster, &counted(edges, "edge"))?;
+            }
+            let moves = |start: &Option<WorstStart>| start.as_ref().map(|start| start.moves);
+            if moves(&worst) > moves(&checked.worst) {
+                checked.worst = worst;
+            }
+            if checked.interrupted || (checked.has_unmapped && !self.keep_going) {
+                break;
+            }
+        }
+        Ok(checked)
+    }
+
+    /// Writes the files that are asked for.
+    fn write_outputs(
+        &self,
+        checked: Checked,
+        folder: Option<FailedStarts>,
+    ) -> Result<(), CliError> {
+        let explorer = self.explorer.explorer.as_ref().and_then(ExplorerCommand::file);
+        let failed = self.failed.as_deref().filter(|_| folder.is_none() && checked.has_unmapped);
+        self.ci.write("check", &checked.cases, explorer.or(failed))?;
+        if let Some(path) = &self.worst {
+            write_worst(path, checked.worst)?;
+        }
+        match (folder, &self.failed) {
+            (Some(folder), _) => folder.write(&checked.unmapped),
+            (None, Some(path)) => match checked.first_unmapped.iter().flatten().next() {
+                Some(failure) => self.write_failed(path, failure),
+                None => {
+                    remark!("{} is not written: each start was mapped", path.display());
+                    Ok(())
+                }
+            },
+            (None, None) => Ok(()),
+        }
     }
 
     /// Writes the start of a failure as a world file, or the run as a picture or a page.
@@ -358,15 +484,14 @@ impl CheckArguments {
         self.cluster.connect(&settings, if self.journal.is_some() { journal } else { "" })
     }
 
-    /// Checks the starts with a number of edges. Returns the line with their counts, and the start that took the most
-    /// moves.
+    /// Checks the starts with a number of edges.
     fn check_size(
         &self,
         line: SizeLine,
         work: &Work,
         mapper: &Mapper,
         cluster: Option<&mut Box<dyn ClusterSession>>,
-    ) -> Result<(SizeLine, Option<WorstStart>), CliError> {
+    ) -> Result<CheckedSize, CliError> {
         let name = counted(line.edges, "edge");
         let (algorithm, choices) = match mapper {
             Mapper::Algorithm(algorithm, choices) => (*algorithm, *choices),
@@ -376,7 +501,8 @@ impl CheckArguments {
                 progress.finish();
                 let tally = tally?;
                 let line = tally.line(line, &sweep.command.text, sweep.marker);
-                return Ok((line, tally.counts.worst));
+                let ExplorerTally { counts, unmapped, .. } = tally;
+                return Ok(CheckedSize { line, worst: counts.worst, unmapped });
             }
         };
         let progress = Progress::new(&name, "starts")?;
@@ -386,15 +512,14 @@ impl CheckArguments {
                 let moves_made = tally.moves_made;
                 (tally, Some(moves_made))
             }
-            Work::Listed(graphs, start) => {
-                (algorithm.check_worlds(graphs, *start, choices, &progress), None)
-            }
+            Work::Listed(worlds) => (algorithm.check_worlds(worlds, choices, &progress), None),
             Work::All(sweep) => (algorithm.sweep(sweep, choices, &progress), None),
             // It is for explorers.
             Work::Enumerated(_) => (Tally::default(), None),
         };
         progress.finish();
-        Ok((line.of_algorithm((algorithm, choices), &tally, moves_made), tally.worst))
+        let line = line.of_algorithm((algorithm, choices), &tally, moves_made);
+        Ok(CheckedSize { line, worst: tally.worst, unmapped: Vec::new() })
     }
 
     /// Checks starts whose runs share their beginnings, with a journal if one is asked for.
@@ -511,11 +636,11 @@ impl CheckArguments {
         if self.explorer.explorer.is_none() {
             check_worlds(self.marker, path, &graphs)?;
         }
-        let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
+        let mut sizes: BTreeMap<usize, Vec<_>> = BTreeMap::new();
         for graph in graphs {
-            sizes.entry(graph.edge_count()).or_default().push(graph);
+            sizes.entry(graph.edge_count()).or_default().push((graph, start));
         }
-        Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Listed(graphs, start))).collect())
+        Ok(sizes.into_iter().map(|(edges, worlds)| (edges, Work::Listed(worlds))).collect())
     }
 }
 
@@ -526,7 +651,7 @@ impl Work {
             Self::Shared(sweep) => sweep.class().is_simple(),
             Self::All(sweep) => sweep.class().is_simple(),
             Self::Enumerated(worlds) => worlds.class().is_simple(),
-            Self::Listed(graphs, _) => graphs.iter().all(EmbeddedGraph::is_simple),
+            Self::Listed(worlds) => worlds.iter().all(|(graph, _)| graph.is_simple()),
         }
     }
 
@@ -537,7 +662,9 @@ impl Work {
     ) -> ControlFlow<()> {
         match self {
             Self::Enumerated(worlds) => worlds.for_each(&mut |found| visit(found.graph, None)),
-            Self::Listed(graphs, start) => graphs.iter().try_for_each(|graph| visit(graph, *start)),
+            Self::Listed(worlds) => {
+                worlds.iter().try_for_each(|(graph, start)| visit(graph, *start))
+            }
             // They are for algorithms.
             Self::Shared(_) | Self::All(_) => ControlFlow::Continue(()),
         }

@@ -67,12 +67,11 @@ impl MappingAlgorithm {
 
     pub fn check_worlds(
         self,
-        graphs: &[EmbeddedGraph],
-        start: Option<Dart>,
+        worlds: &[(EmbeddedGraph, Option<Dart>)],
         choices: RunChoices,
         watch: &dyn Watch,
     ) -> Tally {
-        with_explorer!(self, E => check_worlds(graphs, start, E::default, choices, watch))
+        with_explorer!(self, E => check_worlds(worlds, E::default, choices, watch))
     }
 
     /// Makes and judges the runs with other than the default choices, as [`RunChoices::others`].

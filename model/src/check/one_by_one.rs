@@ -105,23 +105,22 @@ impl Check {
     }
 }
 
-/// Checks explorers on every start of some worlds, or on one start of each, each explorer on one part of them. As with
-/// a [`Check`], the result does not depend on the number of threads.
+/// Checks explorers on every start of some worlds, or on one that is given with a world, each explorer on one part of
+/// them. As with a [`Check`], the result does not depend on the number of threads.
 pub fn check_worlds<E: Explorer>(
-    graphs: &[EmbeddedGraph],
-    start: Option<Dart>,
+    worlds: &[(EmbeddedGraph, Option<Dart>)],
     new: impl Fn() -> E + Sync,
     choices: RunChoices,
     watch: &dyn Watch,
 ) -> Tally {
-    let parts: Vec<_> = graphs.chunks(64).collect();
+    let parts: Vec<_> = worlds.chunks(64).collect();
     tally_parts(&parts, watch, |part, tally| {
         let mut checker = StartChecker::new(&new, choices, watch);
-        part.iter().try_for_each(|graph| match start {
+        part.iter().try_for_each(|(graph, start)| match start {
             None => checker.check_starts(graph, canonical(graph).automorphisms, tally),
             Some(facing) => {
                 tally.worlds += 1;
-                checker.check_these(graph, [facing].into_iter(), tally)
+                checker.check_these(graph, [*facing].into_iter(), tally)
             }
         })
     })

@@ -34,10 +34,13 @@ use crate::cli::{
 const BATCH: usize = 256;
 
 /// What is run, and within which limits.
+#[derive(Clone, Copy)]
 pub(super) struct ExplorerSweep<'a> {
     pub(super) command: &'a ExplorerCommand,
     pub(super) limits: ExplorerLimits,
     pub(super) marker: &'static dyn Marker,
+    /// The number of starts that are not mapped and kept.
+    pub(super) most_kept: usize,
 }
 
 /// Worlds with the facing darts of their starts.
@@ -134,7 +137,8 @@ impl ExplorerSweep<'_> {
         let mut left: usize = batch.worlds.iter().map(|(_, facing)| facing.len()).sum();
         let ended = |tallies, left| BatchRun { tallies, has_more: left > 0 || !batch.is_last };
         let mut tallies = Vec::new();
-        let mut tally = ExplorerTally::default();
+        let empty = || ExplorerTally::keeping(self.most_kept);
+        let mut tally = empty();
         let mut process: Option<ExplorerProcess> = None;
         let mut candidate = Candidate::default();
         let directional = is_directional(self.marker);
@@ -166,7 +170,7 @@ impl ExplorerSweep<'_> {
                     continue;
                 }
                 tally.count(explorer, &start, run, running.end());
-                tallies.push(std::mem::take(&mut tally));
+                tallies.push(std::mem::replace(&mut tally, empty()));
                 if tallies.len() as u64 == self.limits.restarts {
                     return Ok(ended(tallies, left));
                 }
@@ -185,7 +189,7 @@ impl ExplorerSweep<'_> {
         results: &Receiver<BatchResult>,
         enough: &AtomicBool,
     ) -> Result<ExplorerTally, CliError> {
-        let mut total = ExplorerTally::default();
+        let mut total = ExplorerTally::keeping(self.most_kept);
         let mut waiting = BTreeMap::new();
         let mut next = 0;
         for result in results {

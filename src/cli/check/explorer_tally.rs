@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use toposlam_model::{
     check::{KeptStart, Tally, WorstStart},
+    format::named_world::NamedWorld,
     marker::Marker,
 };
 
@@ -20,6 +21,10 @@ pub(super) struct ExplorerTally {
     pub(super) counts: Tally<Option<WorstStart>, Option<FailureLine>>,
     /// The first start on which a limit was reached.
     limit: Option<FailureLine>,
+    /// The starts that were not mapped, in their order, as far as they are [kept](Self::keeping).
+    pub(super) unmapped: Vec<NamedWorld>,
+    /// The number of starts that are not mapped and kept.
+    most_kept: usize,
     /// The number of starts for each name of a fault.
     causes: BTreeMap<String, u64>,
     pub(super) processes_ended: u64,
@@ -28,6 +33,11 @@ pub(super) struct ExplorerTally {
 }
 
 impl ExplorerTally {
+    /// Keeps the first starts that are not mapped, up to this number.
+    pub(super) fn keeping(most_kept: usize) -> Self {
+        Self { most_kept, ..Self::default() }
+    }
+
     /// Counts a run. `stderr` is the end of the standard error of a process that was ended.
     pub(super) fn count(
         &mut self,
@@ -50,10 +60,13 @@ impl ExplorerTally {
         *self.causes.entry(fault.name().to_owned()).or_default() += 1;
         self.processes_ended += u64::from(fault.ends_process());
         counts.unknown += u64::from(fault.is_limit());
+        let name = fault.name().to_owned();
+        let about = format!("The explorer {explorer} does not map it: {name}");
+        if self.unmapped.len() < self.most_kept {
+            self.unmapped.push(NamedWorld::discovered("failed", &about, graph, facing));
+        }
         let first = if fault.is_limit() { &mut self.limit } else { &mut counts.failure };
         if first.is_none() {
-            let name = fault.name().to_owned();
-            let about = format!("The explorer {explorer} does not map it: {name}");
             let run = FailedRun::Explorer(ReportedRun::new(run, stderr));
             *first = Some(FailureLine::new(name, Some(moves), &about, (graph, facing), run));
         }
@@ -63,6 +76,8 @@ impl ExplorerTally {
         self.counts.merge(later.counts);
         self.processes_ended += later.processes_ended;
         self.stopped |= later.stopped;
+        let room = self.most_kept.saturating_sub(self.unmapped.len());
+        self.unmapped.extend(later.unmapped.into_iter().take(room));
         for (cause, count) in later.causes {
             *self.causes.entry(cause).or_default() += count;
         }
