@@ -41,7 +41,8 @@ impl Clearances {
         let start = (from - grid.origin) / grid.cell;
         let mut sample = 0;
         loop {
-            let [column, row] = (start + sample as f64 * ahead).map(floor).into();
+            let at = start + sample as f64 * ahead;
+            let (column, row) = (floor(at.x), floor(at.y));
             if !(0..columns).contains(&column) || !(0..rows).contains(&row) {
                 return (sample as f64 * step, Cell::Unknown);
             }

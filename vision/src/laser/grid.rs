@@ -33,6 +33,11 @@ pub(super) fn floor(number: f64) -> i64 {
     towards_zero.saturating_sub(i64::from(number < towards_zero as f64))
 }
 
+/// The least whole number that is not below this one.
+pub(super) fn ceil(number: f64) -> i64 {
+    0_i64.saturating_sub(floor(-number))
+}
+
 impl Grid {
     pub(super) fn rows(&self) -> usize {
         self.cells.len() / self.columns.max(1)
@@ -48,7 +53,8 @@ impl Grid {
 
     /// The column and the row of a point, on the map or not.
     pub(super) fn column_row(&self, point: Point2<f64>) -> [i64; 2] {
-        ((point - self.origin) / self.cell).map(floor).into()
+        let place = (point - self.origin) / self.cell;
+        [floor(place.x), floor(place.y)]
     }
 
     pub(super) fn point(&self, index: usize) -> Point2<f64> {
@@ -241,13 +247,14 @@ impl Obstacle {
         side(0) * direction.x.abs() + side(1) * direction.y.abs()
     }
 
-    /// The distance between two rectangles.
-    fn gap(&self, other: &Self) -> f64 {
+    /// Whether the distance between two rectangles is less than this.
+    fn is_near(&self, other: &Self, within: f64) -> bool {
         let gap = |axis: usize| {
             let after = |one: &Self, other: &Self| one.low[axis].saturating_sub(other.high[axis]);
             after(self, other).max(after(other, self)) as f64
         };
-        gap(0).hypot(gap(1))
+        // Most are far apart along one axis.
+        gap(0) < within && gap(1) < within && gap(0).hypot(gap(1)) < within
     }
 }
 
@@ -261,7 +268,7 @@ fn in_rows(obstacles: &[Obstacle], gap: f64, length: f64) -> impl Iterator<Item 
     let middles: Vec<Point2<f64>> = obstacles.iter().map(Obstacle::middle).collect();
     let numbers = 0..obstacles.len();
     let is_beside =
-        |one: usize, other: usize| one != other && obstacles[one].gap(&obstacles[other]) < gap;
+        |one: usize, other: usize| one != other && obstacles[one].is_near(&obstacles[other], gap);
     let beside: Vec<Vec<usize>> = numbers
         .clone()
         .map(|one| numbers.clone().filter(|&other| is_beside(one, other)).collect())

@@ -38,45 +38,67 @@ pub(super) struct LocalView {
     pub possible_places: Vec<SeenPlace>,
     /// See [`PlaceView::width`].
     pub width: Option<f64>,
-    /// See [`PlaceView::facts`].
-    pub facts: Option<PlaceFacts>,
 }
 
-impl LocalView {
-    /// What a map shows around the robot. It was at the points that were `driven`.
-    pub(super) fn new(
-        mut grid: Grid,
-        robot: Point2<f64>,
-        viewpoints: &[Viewpoint],
-        driven: &[Point2<f64>],
-        params: &LaserParams,
-        with_facts: bool,
-    ) -> Self {
-        grid.clean(&params.map);
+/// Where the scans of a local map were taken.
+#[derive(Clone, Debug)]
+pub(super) struct LocalScans<'a> {
+    /// Where the robot is now.
+    pub robot: Point2<f64>,
+    pub viewpoints: Vec<Viewpoint>,
+    /// Where the robot was.
+    pub driven: Vec<Point2<f64>>,
+    pub params: &'a LaserParams,
+}
+
+/// All ways on a local map, before it is judged which of them are arms.
+pub(super) struct LocalWays<'a> {
+    scans: LocalScans<'a>,
+    clearances: Clearances,
+    skeleton: Option<Skeleton>,
+    graph: WayGraph,
+}
+
+impl<'a> LocalWays<'a> {
+    pub(super) fn new(mut grid: Grid, scans: LocalScans<'a>) -> Self {
+        grid.clean(&scans.params.map);
         let clearances = Clearances::new(grid);
-        let skeleton = Skeleton::new(&clearances, robot, params);
-        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &clearances));
-        let ways = ways.unwrap_or_default();
-        let judge = ArmJudge { map: &clearances, viewpoints, driven, params: &params.arm };
-        let places_of =
-            |counted: CountedArms| ways.clone().pruned(&judge, counted).0.places(params);
-        let facts = with_facts.then(|| PlaceFacts {
-            driven: places_of(CountedArms::Driven),
-            not_ended: places_of(CountedArms::NotEnded),
-        });
-        let (graph, any_in_doubt) = ways.clone().pruned(&judge, CountedArms::Seen);
+        let skeleton = Skeleton::new(&clearances, scans.robot, scans.params);
+        let graph = skeleton.as_ref().map(|ways| WayGraph::new(ways, &clearances));
+        Self { scans, clearances, skeleton, graph: graph.unwrap_or_default() }
+    }
+
+    /// The ways of which those to ends count as arms, and whether any of the others is in doubt.
+    fn pruned(&self, counted: CountedArms) -> (WayGraph, bool) {
+        let LocalScans { viewpoints, driven, params, .. } = &self.scans;
+        let judge = ArmJudge { map: &self.clearances, viewpoints, driven, params: &params.arm };
+        self.graph.clone().pruned(&judge, counted)
+    }
+
+    fn places(&self, counted: CountedArms) -> Vec<SeenPlace> {
+        self.pruned(counted).0.places(self.scans.params)
+    }
+
+    /// See [`PlaceView::facts`](crate::place::PlaceView::facts).
+    pub(super) fn facts(&self) -> PlaceFacts {
+        PlaceFacts {
+            driven: self.places(CountedArms::Driven),
+            not_ended: self.places(CountedArms::NotEnded),
+        }
+    }
+
+    /// What the map shows around the robot.
+    pub(super) fn view(self) -> LocalView {
+        let (graph, any_in_doubt) = self.pruned(CountedArms::Seen);
+        let LocalScans { robot, params, .. } = self.scans;
         let places = graph.places(params);
         let possible_places =
-            if any_in_doubt { places_of(CountedArms::SeenOrInDoubt) } else { places.clone() };
+            if any_in_doubt { self.places(CountedArms::SeenOrInDoubt) } else { places.clone() };
+        let Self { clearances, skeleton, .. } = self;
         let width =
             skeleton.as_ref().and_then(|ways| ways.width_at(robot, &clearances, &params.map));
-        Self {
-            map: LocalMap { clearances, skeleton, graph },
-            places,
-            possible_places,
-            width,
-            facts,
-        }
+        let map = LocalMap { clearances, skeleton, graph };
+        LocalView { map, places, possible_places, width }
     }
 }
 

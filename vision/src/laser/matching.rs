@@ -238,5 +238,5 @@ fn normal(line: &[Point2<f64>], straight: f64) -> Option<Vector2<f64>> {
 
 /// The square metre of a point.
 fn square(point: Point2<f64>) -> [i64; 2] {
-    point.map(floor).into()
+    [floor(point.x), floor(point.y)]
 }

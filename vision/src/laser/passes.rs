@@ -12,7 +12,7 @@ use toposlam_model::driving::odometry::Odometry;
 use super::{
     drift::ROUNDS,
     matching::{ScanMatcher, WallPoint},
-    params::{LaserParams, MatchingParams},
+    params::{LocalMapParams, MatchingParams},
     ray_counts::{NearWalls, RayCounts},
 };
 use crate::geometry::from_robot;
@@ -43,62 +43,69 @@ const STILL_ASTRAY: f64 = 0.33;
 /// What a local map shows of its own pass.
 pub(super) struct OwnPass<'a> {
     counts: &'a RayCounts,
-    walls: ScanMatcher,
     /// What is near to the ends of its rays, of which some are not at walls: ...
     near_hits: NearWalls,
     /// ... and near to its walls.
     near_walls: NearWalls,
 }
 
-/// How far another pass agrees with a map.
-pub(super) struct PassAgreement {
-    /// The part of its hits that lie on walls, where the map is known.
-    pub(super) part: f64,
-    /// The widest wall that it sees in free space, in metres.
-    pub(super) widest: f64,
-    /// Whether it would agree better elsewhere.
-    pub(super) elsewhere: bool,
+/// The walls of a map's own pass, by points of them, each with the pose of its scan on that map.
+pub(super) fn own_walls<'a>(
+    walls: impl IntoIterator<Item = (&'a [WallPoint], Odometry)>,
+    params: &MatchingParams,
+) -> ScanMatcher {
+    let mut matcher = ScanMatcher::new(MatchingParams { rounds: ROUNDS, ..*params });
+    for (points, pose) in walls {
+        matcher.add(points, &pose);
+    }
+    matcher
 }
 
 impl<'a> OwnPass<'a> {
-    /// The pass of a map by its rays and by points of its walls, each with the pose of its scan on that map.
-    pub(super) fn new<'b>(
-        counts: &'a RayCounts,
-        walls: impl IntoIterator<Item = (&'b [WallPoint], Odometry)>,
-        LaserParams { map, matching, .. }: &LaserParams,
-    ) -> Self {
-        let mut matcher = ScanMatcher::new(MatchingParams { rounds: ROUNDS, ..*matching });
-        for (points, pose) in walls {
-            matcher.add(points, &pose);
-        }
-        let near = NEAR_WALL as usize;
-        let near_hits = counts.near_hits(near);
-        Self { counts, walls: matcher, near_hits, near_walls: counts.near_walls(near, map) }
+    /// The pass of a map by its rays.
+    pub(super) fn new(counts: &'a RayCounts, params: &LocalMapParams) -> Self {
+        let [near_hits, near_walls] = counts.near_hits_and_walls(NEAR_WALL as usize, params);
+        Self { counts, near_hits, near_walls }
     }
 
     /// The small motion of another pass after which its walls lie on those of the map, by points of its walls on the map;
     /// none if they do not match.
-    pub(super) fn correction(&self, walls: impl Iterator<Item = WallPoint>) -> Isometry2<f64> {
+    pub(super) fn correction(
+        &self,
+        own: &ScanMatcher,
+        walls: impl Iterator<Item = WallPoint>,
+    ) -> Isometry2<f64> {
         let is_known =
             |wall: &WallPoint| self.near_hits.at(self.counts.cell_at(wall.point)).is_some();
         let points = some_of(walls.filter(is_known).collect(), POINTS);
-        let matched = self.walls.matched(&points, &Odometry::default(), DEVIATION);
+        let matched = own.matched(&points, &Odometry::default(), DEVIATION);
         matched.map_or_else(Isometry2::identity, |pose| from_robot(&pose))
     }
 
-    /// How far another pass agrees with the map, by the ends of its rays on the map.
-    pub(super) fn agreement(&self, hits: impl Iterator<Item = Point2<f64>>) -> PassAgreement {
+    /// The part of the hits of another pass that lie on walls, where the map is known; `None` if too few do.
+    pub(super) fn part_on_walls(&self, hits: impl Iterator<Item = Point2<f64>>) -> Option<f64> {
         let hits: Vec<[i64; 2]> = hits.map(|hit| self.counts.cell_at(hit)).collect();
-        let Some(part) = part_near(&self.near_hits, &hits, [0, 0], LEAST_HITS) else {
-            return PassAgreement { part: 0.0, widest: 0.0, elsewhere: false };
-        };
-        let is_astray = |hit: &[i64; 2]| self.near_hits.at(*hit) == Some(false);
-        let astray = groups(hits.iter().copied().filter(is_astray).collect());
-        let widest = astray.into_iter().map(|sides| sides.norm()).fold(0.0, f64::max);
+        part_near(&self.near_hits, &hits, [0, 0], LEAST_HITS)
+    }
+
+    /// The widest wall in free space that another pass sees, in metres, by the ends of its rays on the map; `None` if less than
+    /// this part of them lies on walls, or if more would elsewhere.
+    pub(super) fn widest_astray(
+        &self,
+        hits: impl Iterator<Item = Point2<f64>>,
+        least: f64,
+    ) -> Option<f64> {
+        let hits: Vec<[i64; 2]> = hits.map(|hit| self.counts.cell_at(hit)).collect();
+        part_near(&self.near_hits, &hits, [0, 0], LEAST_HITS).filter(|&part| part >= least)?;
         let is_known = |hit: &[i64; 2]| self.near_hits.at(*hit).is_some();
-        let known = some_of(hits.into_iter().filter(is_known).collect(), HITS);
-        let elsewhere = self.fit_elsewhere(&known);
-        PassAgreement { part, widest: self.counts.cell * widest, elsewhere }
+        let known = hits.iter().copied().filter(is_known).collect();
+        if self.fit_elsewhere(&some_of(known, HITS)) {
+            return None;
+        }
+        let is_astray = |hit: &[i64; 2]| self.near_hits.at(*hit) == Some(false);
+        let astray = groups(hits.into_iter().filter(is_astray).collect());
+        let widest = astray.into_iter().map(|sides| sides.norm()).fold(0.0, f64::max);
+        Some(self.counts.cell * widest)
     }
 
     /// Whether more of these hits are near walls after a shift. Where most of them leave what is known it is not known how

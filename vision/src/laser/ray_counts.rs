@@ -3,7 +3,7 @@
 use nalgebra::{Isometry2, Point2, Vector2};
 
 use super::{
-    grid::{Cell, Grid, floor},
+    grid::{Cell, Grid, ceil, floor},
     params::LocalMapParams,
 };
 
@@ -53,8 +53,8 @@ pub(super) struct RayCounts {
     pub cell: f64,
     /// The corner with the least coordinates, in metres.
     origin: Point2<f64>,
-    hits: Vec<u32>,
-    passes: Vec<u32>,
+    hits: Vec<i32>,
+    passes: Vec<i32>,
 }
 
 impl RayCounts {
@@ -72,59 +72,57 @@ impl RayCounts {
     }
 
     pub(super) fn add(&mut self, rays: &Rays) {
-        self.count(rays, |count| *count = count.saturating_add(1));
+        self.count(rays, 1);
     }
 
     pub(super) fn remove(&mut self, rays: &Rays) {
-        self.count(rays, |count| *count = count.saturating_sub(1));
+        self.count(rays, -1);
     }
 
-    fn count(&mut self, rays: &Rays, change: impl Fn(&mut u32)) {
-        let Self { side, ref mut hits, ref mut passes, .. } = *self;
-        let place = |point: Point2<f64>| (point - self.origin) / self.cell;
-        let index = |place: Vector2<f64>| index_of(side, cell_at(place));
-        let from = place(rays.from);
+    /// Adds so much to the counts of the cells of rays.
+    fn count(&mut self, rays: &Rays, more: i32) {
+        let side = self.side;
+        let from = self.place(rays.from);
         for (ends, is_hit) in [(&rays.hits, true), (&rays.between, false)] {
             for &end in ends {
-                let end = place(end);
-                let last = index(end);
-                for_cells(side, [from, end], 1.0, |at| {
-                    if Some(at) != last {
-                        change(&mut passes[at]);
-                    }
-                });
-                if let Some(last) = last.filter(|_| is_hit) {
-                    change(&mut hits[last]);
+                let end = self.place(end);
+                let last = index_of(side, cell_at(end));
+                let before = last.map(|last| self.passes[last]);
+                for_cells(side, [from, end], 1.0, |at| self.passes[at] += more);
+                // A ray does not pass the cell in which it ends.
+                if let Some((last, before)) = last.zip(before) {
+                    self.passes[last] = before;
+                    self.hits[last] += if is_hit { more } else { 0 };
                 }
             }
         }
         for ends in &rays.walls {
-            let ends = ends.map(place);
-            let known = ends.map(index);
+            let ends = ends.map(|end| self.place(end));
+            let known = ends.map(|end| index_of(side, cell_at(end)));
             for_cells(side, ends, 2.0, |at| {
                 if !known.contains(&Some(at)) {
-                    change(&mut hits[at]);
+                    self.hits[at] += more;
                 }
             });
         }
     }
 
-    /// Where rays ended at most this many cells off, along both axes.
-    pub(super) fn near_hits(&self, cells: usize) -> NearWalls {
-        self.near(cells, |index| self.hits[index] > 0)
-    }
-
-    /// Where walls are at most this many cells off, along both axes.
-    pub(super) fn near_walls(&self, cells: usize, params: &LocalMapParams) -> NearWalls {
-        self.near(cells, |index| self.cell(index, params) == Cell::Occupied)
-    }
-
-    fn near(&self, cells: usize, is_wall: impl Fn(usize) -> bool) -> NearWalls {
-        let walls: Vec<bool> = (0..self.hits.len()).map(is_wall).collect();
-        let near = spread(&spread(&walls, self.side, 1, cells), self.side, self.side, cells);
+    /// Where rays ended at most this many cells off, along both axes, and where walls are.
+    pub(super) fn near_hits_and_walls(
+        &self,
+        cells: usize,
+        params: &LocalMapParams,
+    ) -> [NearWalls; 2] {
         let is_known = |at: usize| self.hits[at] > 0 || self.passes[at] > 0;
-        let near = near.into_iter().enumerate().map(|(at, near)| is_known(at).then_some(near));
-        NearWalls { side: self.side, near: near.collect() }
+        let near = |is_wall: &dyn Fn(usize) -> bool| {
+            let walls: Vec<bool> = (0..self.hits.len()).map(is_wall).collect();
+            let near = spread(&spread(&walls, self.side, 1, cells), self.side, self.side, cells);
+            let near = near.into_iter().enumerate().map(|(at, near)| is_known(at).then_some(near));
+            NearWalls { side: self.side, near: near.collect() }
+        };
+        let is_hit = |at: usize| self.hits[at] > 0;
+        let is_wall = |at: usize| self.cell(at, params) == Cell::Occupied;
+        [near(&is_hit), near(&is_wall)]
     }
 
     /// Whether a window of this many cells a side fits around a point.
@@ -210,10 +208,14 @@ fn index_of(side: usize, [column, row]: [i64; 2]) -> Option<usize> {
 }
 
 /// The cell at a place; far away, one beyond every map.
+#[inline]
 fn cell_at(place: Vector2<f64>) -> [i64; 2] {
-    place.map(|at| floor(at.clamp(-1e9, 1e9))).into()
+    let cell = |at: f64| floor(at.clamp(-FARTHEST, FARTHEST));
+    [cell(place.x), cell(place.y)]
 }
 
+/// Ends of lines are at most this many cells from the corner of a map.
+const FARTHEST: f64 = 1e9;
 /// The parts of a cell in which samples are placed: 2^32.
 const PARTS: f64 = 4_294_967_296.0;
 
@@ -225,29 +227,33 @@ fn for_cells(
     density: f64,
     mut visit: impl FnMut(usize),
 ) {
-    let [from, to] = [from, to].map(|place| place.map(|at| at.clamp(-1e9, 1e9)));
+    let near = |at: f64| at.clamp(-FARTHEST, FARTHEST);
+    let from = Vector2::new(near(from.x), near(from.y));
+    let to = Vector2::new(near(to.x), near(to.y));
     let off = to - from;
-    let steps = (density * off.amax()).ceil().max(1.0);
-    let step = off / steps;
+    let steps = ceil(density * off.x.abs().max(off.y.abs())).max(1);
+    let step = off / steps as f64;
     // The samples on the map.
-    let (mut first, mut last) = (0.0_f64, steps);
+    let (mut first, mut last) = (0, steps);
+    let border = side as f64;
+    let is_on_map = |at: f64| (0.0..border).contains(&at);
     for axis in 0..2 {
-        if step[axis] == 0.0 {
+        if step[axis] == 0.0 || is_on_map(from[axis]) && is_on_map(to[axis]) {
             continue;
         }
-        let ends = [0.0, side as f64].map(|border| (border - from[axis]) / step[axis]);
-        first = first.max(ends[0].min(ends[1]).floor());
-        last = last.min(ends[0].max(ends[1]).ceil());
+        let [one, other] = [0.0, border].map(|border| (border - from[axis]) / step[axis]);
+        first = first.max(floor(one.min(other)));
+        last = last.min(ceil(one.max(other)));
     }
     if first > last {
         return;
     }
+    let start = from + first as f64 * step;
     let in_parts = |at: f64| (at * PARTS) as i64;
-    let start = from + first * step;
-    let [mut x, mut y] = [start.x, start.y].map(in_parts);
-    let [east, north] = [step.x, step.y].map(in_parts);
+    let (mut x, mut y) = (in_parts(start.x), in_parts(start.y));
+    let (east, north) = (in_parts(step.x), in_parts(step.y));
     let mut before = usize::MAX;
-    for _ in 0..=(last - first) as u32 {
+    for _ in first..last + 1 {
         let [column, row] = [(x >> 32) as usize, (y >> 32) as usize];
         if column < side && row < side {
             let at = row * side + column;

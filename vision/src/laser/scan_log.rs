@@ -7,7 +7,7 @@
 //! * which scans are used is decided in the order of a hash of their readings, not from the first one on;
 //! * the cells of each local map begin at the robot, along the walls that its scan shows.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{cell::LazyCell, collections::BTreeMap, sync::Arc};
 
 use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::odometry::Odometry;
@@ -15,10 +15,10 @@ use toposlam_model::driving::odometry::Odometry;
 use super::{
     drift::{DriftMeter, ROUNDS},
     grid::floor,
-    local_map::{LocalMap, LocalView, rays},
+    local_map::{LocalScans, LocalView, LocalWays, rays},
     matching::{ScanMatcher, WallPoint},
     params::{LaserParams, LocalMapParams},
-    passes::{OwnPass, PassAgreement},
+    passes::{OwnPass, own_walls},
     ray_counts::{RayCounts, Rays},
     scan::Scan,
     scan_choice::{ChosenScan, ScanChoice},
@@ -185,7 +185,7 @@ impl ScanLog {
     pub fn view(&self, view: usize, with_facts: bool) -> PlaceView {
         let LoggedScan { scan, odometry, pose, .. } = &self.scans[view];
         let log_from_map = self.log_from_map(view);
-        let LocalView { places, possible_places, width, facts, .. } =
+        let (LocalView { places, possible_places, width, .. }, facts) =
             self.local_view(view, with_facts);
         let on_log = |places: Vec<SeenPlace>| {
             places.into_iter().map(|place| place.moved(&log_from_map)).collect()
@@ -210,8 +210,8 @@ impl ScanLog {
     pub fn sight(&self, view: usize, from: Point2<f64>, direction: f64, limit: f64) -> f64 {
         let map_from_log = self.log_from_map(view).inverse();
         let direction = direction + map_from_log.rotation.angle();
-        let LocalMap { clearances, .. } = self.local_view(view, false).map;
-        clearances.sight(map_from_log * from, direction, limit).0
+        let (LocalView { map, .. }, _) = self.local_view(view, false);
+        map.clearances.sight(map_from_log * from, direction, limit).0
     }
 
     /// From the local map of a view to the frame of the log. The robot is at the origin of the map.
@@ -220,7 +220,7 @@ impl ScanLog {
         from_robot(&Odometry { heading: pose.heading + scan.direction_of_walls(), ..*pose })
     }
 
-    fn local_view(&self, view: usize, with_facts: bool) -> LocalView {
+    fn local_view(&self, view: usize, with_facts: bool) -> (LocalView, Option<PlaceFacts>) {
         let params = &self.params.map;
         let here = &self.scans[view];
         let map_from_log = self.log_from_map(view).inverse();
@@ -236,56 +236,73 @@ impl ScanLog {
         for scan in &placed {
             counts.add(&scan.rays);
         }
-        let least = if self.params.matching.rounds > 0 { AGREES_IN_DRIFT } else { AGREES };
         // Passes are compared with what this one shows, and not with each other.
-        let passes = self.other_passes(here);
-        let on_map = |scan: &LoggedScan| moved(&map_from_log, &scan.pose);
-        let own_walls = apart(own).into_iter().map(|scan| (&scan.walls[..], on_map(scan)));
-        let own = (!passes.is_empty()).then(|| OwnPass::new(&counts, own_walls, &self.params));
-        let compared = own.iter().flat_map(|own| {
-            passes.iter().map(|pass| {
-                let walls = pass.iter().flat_map(|scan| {
-                    let map_from_robot = from_robot(&on_map(scan));
-                    scan.walls.iter().map(move |wall| wall.moved(&map_from_robot))
-                });
-                let placed = |map_from_log: &Isometry2<f64>| -> (PassAgreement, Vec<PlacedScan>) {
-                    let placed: Vec<_> =
-                        pass.iter().map(|scan| scan.placed(map_from_log)).collect();
-                    let hits = placed.iter().flat_map(|scan| &scan.rays.hits);
-                    (own.agreement(hits.copied()), placed)
-                };
-                let as_logged = placed(&map_from_log);
-                if as_logged.0.part >= AGREES_WELL {
-                    as_logged
-                } else {
-                    placed(&(own.correction(walls) * map_from_log))
-                }
-            })
-        });
-        let (sure, unsure): (Vec<_>, Vec<_>) = compared
-            .filter(|(agreement, _)| agreement.part >= least && !agreement.elsewhere)
-            .partition(|(agreement, _)| agreement.widest < params.min_width);
+        let (sure, unsure) = self.agreeing_passes(here, &own, &counts, &map_from_log);
+        let add =
+            |counts: &mut RayCounts, placed: &mut Vec<PlacedScan>, passes: Vec<PlacedScan>| {
+                passes.iter().for_each(|scan| counts.add(&scan.rays));
+                placed.extend(passes);
+            };
         let local = |counts: &RayCounts, placed: &[PlacedScan]| {
             let grid = counts.window(robot, side, params);
             let (viewpoints, driven): (Vec<_>, Vec<_>) =
                 placed.iter().map(|scan| (scan.viewpoint.clone(), scan.robot)).unzip();
-            LocalView::new(grid, robot, &viewpoints, &driven, &self.params, with_facts)
+            LocalWays::new(grid, LocalScans { robot, viewpoints, driven, params: &self.params })
         };
-        let scans = |passes: Vec<(PassAgreement, Vec<PlacedScan>)>| {
-            passes.into_iter().flat_map(|(_, pass)| pass)
-        };
-        for scan in scans(sure) {
-            counts.add(&scan.rays);
-            placed.push(scan);
-        }
+        let is_split = !unsure.is_empty();
+        add(&mut counts, &mut placed, sure);
         // Facts are those of passes that lie on each other beyond doubt.
-        let facts = (with_facts && !unsure.is_empty()).then(|| local(&counts, &placed).facts);
-        for scan in scans(unsure) {
-            counts.add(&scan.rays);
-            placed.push(scan);
+        let facts = (with_facts && is_split).then(|| local(&counts, &placed).facts());
+        add(&mut counts, &mut placed, unsure);
+        let ways = local(&counts, &placed);
+        let facts = facts.or_else(|| with_facts.then(|| ways.facts()));
+        (ways.view(), facts)
+    }
+
+    /// The scans of other passes that agree with what a pass shows: those that do beyond doubt, and others.
+    fn agreeing_passes(
+        &self,
+        here: &LoggedScan,
+        own: &[&LoggedScan],
+        counts: &RayCounts,
+        map_from_log: &Isometry2<f64>,
+    ) -> (Vec<PlacedScan>, Vec<PlacedScan>) {
+        let (mut sure, mut unsure) = (Vec::new(), Vec::new());
+        let passes = self.other_passes(here);
+        if passes.is_empty() {
+            return (sure, unsure);
         }
-        let view = local(&counts, &placed);
-        LocalView { facts: facts.unwrap_or(view.facts), ..view }
+        let LaserParams { map, matching, .. } = &self.params;
+        let least = if matching.rounds > 0 { AGREES_IN_DRIFT } else { AGREES };
+        let on_map = |scan: &LoggedScan| moved(map_from_log, &scan.pose);
+        let own_pass = OwnPass::new(counts, map);
+        let walls = LazyCell::new(|| {
+            let own = apart(own.iter().copied());
+            own_walls(own.into_iter().map(|scan| (&scan.walls[..], on_map(scan))), matching)
+        });
+        for pass in passes {
+            let part = own_pass.part_on_walls(pass.iter().flat_map(|scan| {
+                let map_from_robot = from_robot(&on_map(scan));
+                scan.rays.hits.iter().map(move |hit| map_from_robot * hit)
+            }));
+            let motion = if part.is_some_and(|part| part >= AGREES_WELL) {
+                *map_from_log
+            } else {
+                let points = pass.iter().flat_map(|scan| {
+                    let map_from_robot = from_robot(&on_map(scan));
+                    scan.walls.iter().map(move |wall| wall.moved(&map_from_robot))
+                });
+                own_pass.correction(&walls, points) * map_from_log
+            };
+            let placed: Vec<PlacedScan> = pass.iter().map(|scan| scan.placed(&motion)).collect();
+            let hits = placed.iter().flat_map(|scan| &scan.rays.hits);
+            match own_pass.widest_astray(hits.copied(), least) {
+                Some(widest) if widest < map.min_width => sure.extend(placed),
+                Some(_) => unsure.extend(placed),
+                None => {}
+            }
+        }
+        (sure, unsure)
     }
 
     /// The scans of other passes within the reach of a local map, the nearest pass along the way first: for each pass the

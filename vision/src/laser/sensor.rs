@@ -7,7 +7,7 @@ use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::odometry::Odometry;
 
 use super::{
-    local_map::{LocalMap, LocalView, is_near_origin, rays},
+    local_map::{LocalMap, LocalScans, LocalView, LocalWays, is_near_origin, rays},
     matching::ScanMatcher,
     params::LaserParams,
     ray_counts::{RayCounts, Rays},
@@ -107,10 +107,10 @@ impl PlaceSensor for LaserSensor {
         let counts = self.counts.get(self.views % self.counts.len().max(1))?;
         self.views += 1;
         let grid = counts.window(position, side, &params);
-        let viewpoints = self.viewpoints.make_contiguous();
-        let driven: Vec<_> = viewpoints.iter().map(Viewpoint::point).collect();
-        let LocalView { map, places, possible_places, width, .. } =
-            LocalView::new(grid, position, viewpoints, &driven, &self.params, false);
+        let viewpoints: Vec<Viewpoint> = self.viewpoints.iter().cloned().collect();
+        let driven = viewpoints.iter().map(Viewpoint::point).collect();
+        let scans = LocalScans { robot: position, viewpoints, driven, params: &self.params };
+        let LocalView { map, places, possible_places, width } = LocalWays::new(grid, scans).view();
         self.map = Some(map);
         Some(PlaceView {
             robot,
