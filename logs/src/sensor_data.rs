@@ -59,7 +59,6 @@ pub(super) fn scan_of(
     mount: &Mount,
     repairs: &mut ScanRepairs,
 ) -> Result<Scan, String> {
-    let sense = if mount.is_upside_down { -1.0 } else { 1.0 };
     let ranges = match message.at("ranges") {
         Some(Value::Numbers(ranges)) => ranges.iter().map(|range| range.f64()).collect(),
         _ => None,
@@ -74,12 +73,12 @@ pub(super) fn scan_of(
         }
     }
     let increment = repairs.increment([first, last, increment], ranges.len())?;
-    let geometry = ScanGeometry {
-        angle_min: sense * first,
-        angle_increment: sense * increment,
+    let geometry = mount.seen_from_above(ScanGeometry {
+        angle_min: first,
+        angle_increment: increment,
         range_min: message.number_at("range_min")?,
         range_max: message.number_at("range_max")?,
-    };
+    });
     let ranges = ranges.into_iter().map(|range| repairs.range(range)).collect();
     Scan::new(geometry, ranges, mount.robot_from_scanner).map_err(|error| error.to_string())
 }

@@ -27,6 +27,8 @@ messages! {
     CompressedImage<FileBytes<'_>>: "sensor_msgs" "CompressedImage";
     LaserScanMessage<&[f32]>: "sensor_msgs" "LaserScan";
     Twist: "geometry_msgs" "Twist";
+    TwistStamped: "geometry_msgs" "TwistStamped";
+    Clock: "rosgraph_msgs" "Clock";
     PoseStamped: "geometry_msgs" "PoseStamped";
     OdometryMessage: "nav_msgs" "Odometry";
     TFMessage<'_>: "tf2_msgs" "TFMessage";
@@ -146,6 +148,18 @@ impl Twist {
         let linear = Vector3 { x: speed, ..Vector3::default() };
         Self { linear, angular: Vector3 { z: turning, ..Vector3::default() } }
     }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TwistStamped<T = &'static str> {
+    pub header: Header<T>,
+    pub twist: Twist,
+}
+
+/// The present time, where it is not that of the system.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Clock {
+    pub clock: Stamp,
 }
 
 /// The covariance of six numbers; zeros: unknown.

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Isometry2, Isometry3, UnitQuaternion, Vector3};
 use toposlam_model::driving::odometry::Odometry;
-use toposlam_vision::geometry::angle;
+use toposlam_vision::{geometry::angle, laser::scan::ScanGeometry};
 
 use super::{
     error::LogError, messages::Stamp, reader::Log, standard::Quaternion, topic::Topic, value::Value,
@@ -117,18 +117,37 @@ pub struct ScannerFrames {
     pub base_frame: Option<String>,
 }
 
+/// Where a scanner is on its robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Mount {
-    pub(super) robot_from_scanner: Isometry2<f64>,
+pub struct Mount {
+    pub robot_from_scanner: Isometry2<f64>,
     /// Whether it is mounted upside down, so that its angles count clockwise from above.
-    pub(super) is_upside_down: bool,
+    pub is_upside_down: bool,
+}
+
+impl Mount {
+    /// In the robot's centre, looking ahead.
+    pub fn centre() -> Self {
+        Self { robot_from_scanner: Isometry2::identity(), is_upside_down: false }
+    }
+
+    /// The geometry of a scan with angles counter-clockwise from above.
+    pub fn seen_from_above(&self, geometry: ScanGeometry) -> ScanGeometry {
+        let sense = if self.is_upside_down { -1.0 } else { 1.0 };
+        let ScanGeometry { angle_min, angle_increment, .. } = geometry;
+        ScanGeometry {
+            angle_min: sense * angle_min,
+            angle_increment: sense * angle_increment,
+            ..geometry
+        }
+    }
 }
 
 /// The frames of a log, and the mounts of its scanners.
 pub(super) struct Mounts<'l> {
     log: &'l Log,
     stated: ScannerFrames,
-    tree: Option<Tree>,
+    tree: Option<FrameTree>,
     /// Whether transforms that may change are in the tree, too.
     has_moving: bool,
     frames: BTreeMap<String, Result<Isometry3<f64>, String>>,
@@ -274,7 +293,7 @@ impl<'l> Mounts<'l> {
     /// odometry.
     fn in_base(&mut self, frame: &str) -> Result<Option<Isometry3<f64>>, LogError> {
         if self.tree.is_none() {
-            let mut tree = Tree::default();
+            let mut tree = FrameTree::default();
             tree.read(self.log, true)?;
             self.tree = Some(tree);
             self.child = first_child(self.log, self.odometry)?;
@@ -316,16 +335,30 @@ fn mount(robot_from_scanner: &Isometry3<f64>, frame: &str) -> Result<Mount, Stri
     Ok(Mount { robot_from_scanner, is_upside_down: up < 0.0 })
 }
 
-/// The frames of a log: of each its neighbours, and their first poses in it. The frames in which the robot moves
+/// The frames of a robot: of each its neighbours, and their first poses in it. The frames in which the robot moves
 /// are left out.
-#[derive(Default)]
-struct Tree {
+#[derive(Clone, Debug, Default)]
+pub struct FrameTree {
     neighbours: BTreeMap<String, Vec<(String, Isometry3<f64>)>>,
-    /// Whether the log has any transform.
+    /// Whether there was any transform.
     has_transforms: bool,
 }
 
-impl Tree {
+impl FrameTree {
+    /// Adds the transforms of a message of `tf2_msgs/TFMessage`.
+    pub fn add_message(&mut self, message: &Value<'_>) {
+        transforms(message).into_iter().for_each(|transform| self.add(transform));
+    }
+
+    /// The mount of the scanner of a frame on the robot; `None` if no transforms lead from it to the robot.
+    ///
+    /// # Errors
+    /// Returns an error if the scanner is not level.
+    pub fn scanner_mount(&self, frame: &str) -> Result<Option<Mount>, String> {
+        let frame = frame_name(frame);
+        self.nearest(&frame, is_base).map(|pose| mount(&pose, &frame)).transpose()
+    }
+
     /// Adds the transforms of a log that are static, or the others.
     fn read(&mut self, log: &Log, is_static: bool) -> Result<(), LogError> {
         let is_wanted = |topic: &Topic| {
@@ -339,9 +372,7 @@ impl Tree {
             let Some(Ok(value)) = topic.and_then(|topic| topic.decode(&message.bytes)) else {
                 continue;
             };
-            for transform in transforms(&value) {
-                self.add(transform);
-            }
+            self.add_message(&value);
         }
         Ok(())
     }

@@ -58,6 +58,14 @@ pub enum RobotError {
     EndOfLog,
     #[error("no ROS master at {master}: {cause}")]
     Unreachable { master: String, cause: String },
+    #[error("DDS cannot be used: {cause}")]
+    NoDds { cause: String },
+    #[error("nobody {does} {topic} in domain {domain}, {seconds} s long")]
+    Nobody { does: &'static str, topic: String, domain: u16, seconds: f64 },
+    #[error("{topic} of the robot is {theirs}; this program needs {ours}")]
+    OtherType { topic: String, theirs: String, ours: String },
+    #[error("the scanner's frame `{frame}` is not connected to the robot: {cause}")]
+    NoMount { frame: String, cause: String },
     /// `unread` counts the messages of another type.
     #[error("no message on {topic} for {seconds} s{}", unreadable(*.unread))]
     Silent { topic: String, seconds: f64, unread: u64 },

@@ -18,6 +18,8 @@ pub mod evaluation;
 mod faults;
 pub mod ground_truth_monitor;
 mod learned_sensors;
+#[cfg(feature = "live")]
+pub mod live;
 mod motion;
 mod obstacle_judge;
 #[cfg(feature = "evaluate")]
@@ -27,8 +29,6 @@ mod plans;
 mod question_limit;
 pub mod random_plan;
 pub mod render;
-#[cfg(feature = "ros1")]
-pub mod ros1;
 pub mod run;
 pub mod sample_verdict;
 mod scanner;

@@ -143,13 +143,13 @@ impl SimulatedBase {
     }
 
     /// Sets the wheel speeds. No time passes.
-    #[cfg(feature = "ros1")]
+    #[cfg(feature = "live")]
     pub(crate) fn command(&mut self, wheels: WheelSpeeds) {
         self.wheels = wheels;
         self.silent = 0.0;
     }
 
-    #[cfg(feature = "ros1")]
+    #[cfg(feature = "live")]
     pub(crate) fn wheels(&self) -> WheelSpeeds {
         self.wheels
     }

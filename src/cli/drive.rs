@@ -1,6 +1,6 @@
-//! `toposlam drive --ros URI`: a live SuperScout maps its building. Sections 2.5 and 6.
+//! `toposlam drive`: a live robot maps its building. Sections 2.5 and 6.
 
-#[cfg(feature = "ros1")]
+#[cfg(any(feature = "ros1", feature = "ros2"))]
 mod live;
 
 use std::{path::PathBuf, time::Duration};
@@ -11,17 +11,19 @@ use super::{
     CliError, Outcome,
     exit_codes::help_end,
     robot_sensor::{SensorChoice, one_sensor},
+    ros_options::RosOptions,
     run_options::{GivenOptions, RunOptions},
 };
 
-/// Let a live SuperScout map its building by its camera or its laser scanner
+/// Let a live robot map its building by its camera or its laser scanner
 ///
 /// The robot stands at an L, with its back to one of the two hallways and its marker on the floor along
-/// it. The program reads the camera and the odometry and commands the wheels through ROS 1 topics. It
-/// maps as in a simulated run.
+/// it. The program reads the camera and the odometry and commands the wheels through the topics of ROS 1 or
+/// ROS 2. It maps as in a simulated run.
 ///
-/// With --sensor laser it reads a laser scanner in the robot's centre that looks ahead. A scanner does not see
-/// the marker: another detector must publish the marker's pose in the robot's frame, x along the marker.
+/// With --sensor laser it reads a laser scanner. In ROS 2, /tf_static says where on the robot it is; in ROS 1, it is
+/// in the robot's centre and looks ahead. A scanner does not see the marker: another detector must publish the
+/// marker's pose in the robot's frame, x along the marker.
 ///
 /// With --recover the robot goes on after a contradiction, and if it gets lost. A hallway that it cannot pass
 /// is a dead end: it maps everything else, and reports the doors that are blocked.
@@ -32,9 +34,9 @@ use super::{
 #[derive(clap::Args)]
 #[command(
     override_usage = "\
-toposlam drive [OPTIONS] --ros <URI> --calibration <FILE>
+toposlam drive [OPTIONS] <--ros2|--ros <URI>> --calibration <FILE>
                       --colours <FILE>
-       toposlam drive [OPTIONS] --ros <URI> --sensor laser",
+       toposlam drive [OPTIONS] <--ros2|--ros <URI>> --sensor laser",
     after_help = help_end(
         &notes(),
         &[
@@ -45,13 +47,14 @@ toposlam drive [OPTIONS] --ros <URI> --calibration <FILE>
         ],
     )
 )]
-#[cfg_attr(not(feature = "ros1"), allow(dead_code, reason = "there is no robot to drive"))]
+#[command(group(clap::ArgGroup::new("robot").args(["ros", "ros2"]).required(true)))]
+#[cfg_attr(
+    not(any(feature = "ros1", feature = "ros2")),
+    allow(dead_code, reason = "there is no robot to drive")
+)]
 pub(super) struct DriveArguments {
     #[command(flatten)]
     given: GivenOptions,
-    /// The ROS 1 master, as in http://127.0.0.1:11311
-    #[arg(long, value_name = "URI")]
-    ros: String,
     /// The sensor by which the robot drives: camera or laser
     #[arg(long, value_name = "SENSOR", default_value = "camera", value_parser = one_sensor())]
     sensor: SensorChoice,
@@ -69,6 +72,8 @@ pub(super) struct DriveArguments {
     patience: Duration,
     #[command(flatten)]
     options: RunOptions,
+    #[command(flatten)]
+    ros: RosOptions,
 }
 
 /// What each topic carries, its usual name and its type.
@@ -77,7 +82,7 @@ const TOPICS: [(&str, &str, &str); 5] = [
     ("scans", SCAN, "sensor_msgs/LaserScan, with --sensor laser"),
     ("marker", MARKER, "geometry_msgs/PoseStamped, with --sensor laser"),
     ("odometry", ODOM, "nav_msgs/Odometry, by the clock of the images"),
-    ("wheels", CMD_VEL, "geometry_msgs/Twist, to the robot"),
+    ("wheels", CMD_VEL, "geometry_msgs/Twist or TwistStamped, to the robot"),
 ];
 
 /// Parses what a topic carries, and its name.
@@ -98,10 +103,9 @@ fn patience(text: &str) -> Result<Duration, String> {
 }
 
 impl DriveArguments {
-    #[cfg(not(feature = "ros1"))]
-    #[expect(clippy::unused_self, reason = "with the feature it is used")]
+    #[cfg(not(any(feature = "ros1", feature = "ros2")))]
     pub(super) fn run(self, _: &mut dyn std::io::Write) -> Result<Outcome, CliError> {
-        Err(super::without_ros())
+        Err(self.ros.missing())
     }
 }
 
@@ -115,12 +119,13 @@ fn notes() -> String {
 const NOTES: &str =
     "The run is not checked while the robot drives. Check its log with toposlam conform.
 
-This command needs a build with ROS 1: cargo build --release --features ros1
+This command needs a build with ROS: cargo build --release --features ros2
+(or ros1, or both).
 
 Examples:
   toposlam drive --ros http://robot:11311 --calibration camera.toml \\
     --colours colours.toml --log run.mcap --map map.toml
-  toposlam drive --ros http://robot:11311 --sensor laser --log run.mcap
+  toposlam drive --ros2 --network --sensor laser --log run.mcap
 
 A simulated robot:
-  toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311";
+  toposlam simulate worlds/shape-6.toml --ros2 --sensor laser";

@@ -20,6 +20,7 @@ mod old_names;
 mod open_log;
 mod play;
 mod proofs;
+mod ros_options;
 mod run_capture;
 mod run_options;
 mod run_report;
@@ -139,14 +140,6 @@ fn write_world_or_picture(
         Some("svg" | "png") => write_drawing(path, &picture::svg(picture)),
         _ => output::write_world(path, world),
     }
-}
-
-/// The error of `--ros` in a program without the feature `ros1`.
-#[cfg(not(feature = "ros1"))]
-fn without_ros() -> CliError {
-    let cause = "this program was built without ROS 1; to add it, run \
-                 cargo build --release --features ros1";
-    CliError::at("--ros", cause)
 }
 
 /// Runs the verb on the command line, and returns the exit code of the program. The revision of its sources is

@@ -131,7 +131,10 @@ pub(super) enum RobotReport {
         /// Of the off-line version on the same frames.
         compute_seconds: f64,
     },
-    #[cfg_attr(not(feature = "ros1"), allow(dead_code, reason = "there is no robot to drive"))]
+    #[cfg_attr(
+        not(any(feature = "ros1", feature = "ros2")),
+        allow(dead_code, reason = "there is no robot to drive")
+    )]
     Live { ending: &'static str, vertices: usize, edges: usize, seconds: f64 },
 }
 

@@ -28,6 +28,7 @@ use super::{
     input, noise, output,
     progress::{Progress, StopSignal},
     robot_sensor::{ScannerOption, SensorChoice, needs_camera},
+    ros_options::RosOptions,
     run_capture::RunCapture,
     run_options::{GivenOptions, RunOptions},
     run_report::{RobotReport, RobotRun, RunReport},
@@ -49,7 +50,12 @@ use crate::{page, picture, story};
 /// With --sensor laser, laser scans take the place of the images, and a separate detector reports the marker.
 /// With --sensor both, the robot drives by its camera, and the log has the scans, too.
 #[derive(clap::Args)]
-#[command(after_help = after_help())]
+#[command(
+    after_help = after_help(),
+    group = clap::ArgGroup::new("served").args(["ros", "ros2"]),
+    mut_arg("ros", |ros| ros.conflicts_with_all(NOT_DRIVEN)),
+    mut_arg("ros2", |ros2| ros2.conflicts_with_all(NOT_DRIVEN)),
+)]
 pub(super) struct SimulateArguments {
     #[command(flatten)]
     given: GivenOptions,
@@ -99,27 +105,27 @@ pub(super) struct SimulateArguments {
     /// Write a page that shows the run step by step, .html
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Do not explore: serve the robot through ROS 1 topics at this master
-    #[arg(long, value_name = "URI", conflicts_with_all = NOT_DRIVEN)]
-    ros: Option<String>,
-    /// With --ros: how fast simulated time passes, as a multiple of real time
+    #[command(flatten)]
+    options: RunOptions,
+    #[command(flatten)]
+    ros: RosOptions,
+    /// With --ros2 or --ros: how fast simulated time passes, as a multiple of real time
     #[arg(
         long,
         value_name = "TIMES",
         default_value_t = 1.0,
         value_parser = speed,
-        requires = "ros",
+        help_heading = "ROS",
+        requires = "served",
         conflicts_with_all = NOT_DRIVEN
     )]
     speed: f64,
-    #[command(flatten)]
-    options: RunOptions,
 }
 
 /// Options of rendered images, which neither --by-scene nor --sensor laser makes.
 const OF_IMAGES: [&str; 5] = ["calibration", "size", "colours", "look", "effect"];
 
-/// Options that need a run; --ros serves the robot instead. All are named: clap drops the requirement of an option
+/// Options that need a run; --ros and --ros2 serve the robot instead. All are named: clap drops the requirement of an option
 /// that conflicts.
 const NOT_DRIVEN: [&str; 12] = [
     "algorithm",
@@ -152,15 +158,15 @@ struct Simulation {
 
 impl SimulateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        #[cfg(not(feature = "ros1"))]
-        if self.ros.is_some() {
-            return Err(super::without_ros());
+        #[cfg(not(any(feature = "ros1", feature = "ros2")))]
+        if self.ros.is_given() {
+            return Err(self.ros.missing());
         }
         let begun = Instant::now();
         let simulation = self.prepare()?;
-        #[cfg(feature = "ros1")]
-        if let Some(master) = &self.ros {
-            return serve(simulation.robot, master, self.speed, out);
+        #[cfg(any(feature = "ros1", feature = "ros2"))]
+        if self.ros.is_given() {
+            return serve(simulation.robot, &self.ros, self.speed, out);
         }
         self.simulate(simulation, begun, out)
     }
@@ -371,28 +377,29 @@ fn in_words(run: &Run, ended: &RobotRun) -> String {
     }
 }
 
-/// Serves the robot through ROS 1 topics until Ctrl-C: another program drives it.
-#[cfg(feature = "ros1")]
+/// Serves the robot through topics until Ctrl-C: another program drives it.
+#[cfg(any(feature = "ros1", feature = "ros2"))]
 fn serve(
     robot: SimulatedRobot,
-    master: &str,
+    ros: &RosOptions,
     speed: f64,
     out: &mut dyn Write,
 ) -> Result<Outcome, CliError> {
-    use toposlam_robot::ros1::RobotTopics;
-    use toposlam_simulator::ros1::{ServeSummary, serve};
+    use toposlam_robot::live::RobotTopics;
+    use toposlam_simulator::live::{ServeSummary, serve};
 
     use super::progress::must_stop;
 
-    let topics = RobotTopics::usual(master);
+    let topics = RobotTopics::default();
+    let served = ros.serve(&topics)?;
     let RobotTopics { wheels, odometry, images, scans, marker, .. } = &topics;
-    writeln!(out, "A simulated robot at {master}. Ctrl-C ends it.")?;
+    writeln!(out, "A simulated robot {}. Ctrl-C ends it.", ros.place()?)?;
     writeln!(out, "  subscribes to  {wheels}")?;
     writeln!(out, "  publishes      {odometry}, /tf, {images}, {scans}, {marker}")?;
     out.flush()?;
-    let served = serve(robot, &topics, speed, must_stop);
+    let summary = serve(robot, &*served, speed, must_stop);
     let ServeSummary { seconds, real_seconds, frames } =
-        served.map_err(|error| CliError::at("--ros", error))?;
+        summary.map_err(|error| CliError::at("the topics", error))?;
     writeln!(
         out,
         "{seconds:.0} s of simulated time in {real_seconds:.0} s ({:.1} times real time), \
@@ -437,7 +444,7 @@ Examples:
   toposlam simulate worlds/shape-8.toml --by-scene --recover --budget 15moves \\
     --log part.mcap
   toposlam simulate worlds/shape-8.toml --by-scene --recover --resume part.mcap
-  toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
+  toposlam simulate worlds/shape-6.toml --ros2 --sensor laser --speed 5
 ";
     help_end(
         &notes,

@@ -1,76 +1,21 @@
 //! The messages of ROS 1 that a SuperScout's nodes exchange, and their encoding.
-//!
-//! Bytes from outside are not trusted: a body that is too short or too long is rejected, and no memory
-//! is allocated for a length that the body does not have.
-
-use std::fmt;
 
 use roslibrust_serde_rosmsg::{from_slice_known_length, to_vec_skip_length};
-use serde::{
-    Deserialize, Deserializer, Serialize,
-    de::{DeserializeOwned, Visitor},
-};
-use toposlam_logs::{
-    messages::Stamp,
-    standard::{
-        BASE, CompressedImage, Header, LaserScanMessage, OdometryMessage, PoseMessage, PoseStamped,
-        Twist,
+use serde::{Serialize, de::DeserializeOwned};
+use toposlam_logs::standard::{CompressedImage, LaserScanMessage, OdometryMessage, PoseStamped};
+use toposlam_model::driving::scene::MarkerView;
+use toposlam_vision::laser::scan::Scan;
+
+use crate::{
+    live::messages::{
+        Bytes, Nanoseconds, Reckoning, ScanReading, Stamped, image_file, marker_message,
+        marker_view, odometry_message, reckoning, scan_reading, time, twist_of, wheel_speeds,
     },
+    superscout::WheelSpeeds,
 };
-use toposlam_model::driving::{
-    odometry,
-    scene::{MarkerView, undirected},
-};
-use toposlam_vision::laser::scan::{Scan, ScanGeometry};
-
-use crate::superscout::WheelSpeeds;
-
-/// Nanoseconds since the beginning of 1970, or since a robot was switched on.
-pub type Nanoseconds = u64;
-
-pub const SECOND: Nanoseconds = 1_000_000_000;
-
-/// What is read of odometry.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reckoning {
-    /// When it was measured.
-    pub stamp: Nanoseconds,
-    /// The robot's pose by odometry.
-    pub at: odometry::Odometry,
-    /// How fast the robot goes by it, and turns.
-    pub wheels: WheelSpeeds,
-}
-
-/// What is read of another message, and its stamp.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Stamped<T> {
-    pub(super) stamp: Nanoseconds,
-    pub(super) content: T,
-}
 
 /// A message that begins with a header. In ROS 1 a header begins with a sequence number.
 type Numbered<M> = (u32, M);
-
-/// Bytes or a text, after their length; a text need not be UTF-8.
-struct Bytes(Vec<u8>);
-
-impl<'d> Deserialize<'d> for Bytes {
-    fn deserialize<D: Deserializer<'d>>(from: D) -> Result<Self, D::Error> {
-        struct Whole;
-        impl Visitor<'_> for Whole {
-            type Value = Bytes;
-
-            fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
-                out.write_str("bytes")
-            }
-
-            fn visit_byte_buf<E>(self, bytes: Vec<u8>) -> Result<Bytes, E> {
-                Ok(Bytes(bytes))
-            }
-        }
-        from.deserialize_byte_buf(Whole)
-    }
-}
 
 /// The message that a body is; `None` if it is too short or too long. A length beyond the end of the
 /// body is an error before anything is allocated for it.
@@ -90,98 +35,57 @@ pub(super) fn twist(wheels: WheelSpeeds) -> Vec<u8> {
 }
 
 /// The command to the wheels; `None` if it is no such message.
-pub fn read_twist(bytes: &[u8]) -> Option<WheelSpeeds> {
+pub(super) fn read_twist(bytes: &[u8]) -> Option<WheelSpeeds> {
     read(bytes).map(wheel_speeds)
 }
 
 /// The body of odometry.
-pub fn odometry(number: u32, reckoning: &Reckoning) -> Vec<u8> {
+pub(super) fn odometry(number: u32, reckoning: &Reckoning) -> Vec<u8> {
     write(&(number, odometry_message(reckoning)))
-}
-
-fn odometry_message(Reckoning { stamp, at, wheels }: &Reckoning) -> OdometryMessage {
-    OdometryMessage::new(time(*stamp), at, twist_of(*wheels))
 }
 
 /// The odometry; `None` if it is no such message, or a number in it is not finite.
 pub(super) fn read_odometry(bytes: &[u8]) -> Option<Reckoning> {
-    let (_, OdometryMessage { header, pose, twist, .. }) =
-        read::<Numbered<OdometryMessage<Bytes>>>(bytes)?;
-    let (at, wheels) = (pose.pose.to_floor()?, wheel_speeds(twist.twist));
-    Some(Reckoning { stamp: nanoseconds(header.stamp), at, wheels })
+    let (_, message) = read::<Numbered<OdometryMessage<Bytes>>>(bytes)?;
+    reckoning(message)
 }
 
 /// The body of the transform from the frame of odometry to the robot.
-pub fn frames(number: u32, reckoning: &Reckoning) -> Vec<u8> {
+pub(super) fn frames(number: u32, reckoning: &Reckoning) -> Vec<u8> {
     write(&vec![(number, odometry_message(reckoning).transform())])
 }
 
 /// The body of an image.
-pub fn image(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
+pub(super) fn image(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
     write(&(number, CompressedImage::new(time(stamp), file)))
 }
 
 /// An image; `None` if it is no such message.
 pub(super) fn read_image(bytes: &[u8]) -> Option<Stamped<Vec<u8>>> {
-    let (_, CompressedImage { header, data: Bytes(file), .. }) =
-        read::<Numbered<CompressedImage<Bytes, Bytes>>>(bytes)?;
-    Some(Stamped { stamp: nanoseconds(header.stamp), content: file })
+    let (_, message) = read::<Numbered<CompressedImage<Bytes, Bytes>>>(bytes)?;
+    Some(image_file(message))
 }
 
 /// The body of a scan.
-pub fn scan(number: u32, stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
+pub(super) fn scan(number: u32, stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
     write(&(number, LaserScanMessage::new(time(stamp), scan)))
 }
 
-/// A scan; `None` if it is no such message, or no scan.
-pub(super) fn read_scan(bytes: &[u8]) -> Option<Stamped<Scan>> {
+/// The readings of a scan; `None` if it is no such message.
+pub(super) fn read_scan(bytes: &[u8]) -> Option<Stamped<ScanReading>> {
     let (_, message) = read::<Numbered<LaserScanMessage<Vec<f32>, Bytes>>>(bytes)?;
-    let geometry = ScanGeometry {
-        angle_min: message.angle_min.into(),
-        angle_increment: message.angle_increment.into(),
-        range_min: message.range_min.into(),
-        range_max: message.range_max.into(),
-    };
-    let scan = Scan::new(geometry, message.ranges, nalgebra::Isometry2::identity()).ok()?;
-    Some(Stamped { stamp: nanoseconds(message.header.stamp), content: scan })
+    Some(scan_reading(message))
 }
 
 /// The body of the marker's pose in the robot's frame.
-pub fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
-    let at = odometry::Odometry { position: marker.position, heading: marker.axis };
-    let header = Header { stamp: time(stamp), frame_id: BASE };
-    write(&(number, PoseStamped { header, pose: PoseMessage::on_floor(&at) }))
+pub(super) fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
+    write(&(number, marker_message(stamp, marker)))
 }
 
 /// The marker; `None` if it is no such message, or a number in it is not finite.
 pub(super) fn read_marker(bytes: &[u8]) -> Option<Stamped<MarkerView>> {
-    let (_, PoseStamped { header, pose }) = read::<Numbered<PoseStamped<Bytes>>>(bytes)?;
-    let odometry::Odometry { position, heading } = pose.to_floor()?;
-    let marker = MarkerView { position, axis: undirected(heading), door: None };
-    Some(Stamped { stamp: nanoseconds(header.stamp), content: marker })
-}
-
-/// A time. In ROS 1 the seconds have no sign.
-fn time(stamp: Nanoseconds) -> Stamp {
-    Stamp { sec: ((stamp / SECOND) as u32).cast_signed(), nanosec: (stamp % SECOND) as u32 }
-}
-
-fn nanoseconds(Stamp { sec, nanosec }: Stamp) -> Nanoseconds {
-    u64::from(sec.cast_unsigned()) * SECOND + u64::from(nanosec)
-}
-
-fn twist_of(wheels: WheelSpeeds) -> Twist {
-    Twist::new(wheels.speed(), wheels.turn_rate())
-}
-
-/// Within the limits of a SuperScout; a stop if a number is not finite.
-fn wheel_speeds(twist: Twist) -> WheelSpeeds {
-    let (speed, turning) = (twist.linear.x, twist.angular.z);
-    if speed.is_finite() && turning.is_finite() {
-        WheelSpeeds::from_motion(speed, turning)
-    } else {
-        WheelSpeeds::STOP
-    }
+    let (_, message) = read::<Numbered<PoseStamped<Bytes>>>(bytes)?;
+    marker_view(message)
 }
 
 #[cfg(test)]

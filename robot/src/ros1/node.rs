@@ -3,11 +3,7 @@
 
 #![allow(clippy::missing_errors_doc, reason = "stated once, at the node")]
 
-use std::{
-    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
-    thread::sleep,
-    time::{Duration, Instant},
-};
+use std::{thread::sleep, time::Duration};
 
 use roslibrust::ros1::{NodeHandle, PublisherAny};
 use tokio::{
@@ -17,7 +13,10 @@ use tokio::{
 use toposlam_logs::message::Message;
 
 use super::definition::{definition, type_name};
-use crate::robot::RobotError;
+use crate::{
+    live::topic::{self, Subscription},
+    robot::RobotError,
+};
 
 /// The longest time until the master answers.
 const ANSWER: Duration = Duration::from_secs(10);
@@ -30,7 +29,7 @@ const LENGTH: usize = 4;
 
 /// A node. When it is dropped, it unregisters from the master. Its publishers must be dropped
 /// before it. An error means that the master or the connection fails.
-pub struct Node {
+pub(super) struct Node {
     handle: Option<NodeHandle>,
     /// `None` once it is dropped.
     runtime: Option<Runtime>,
@@ -40,7 +39,7 @@ pub struct Node {
 
 impl Node {
     /// A node of this master. The process number is added to the name.
-    pub fn new(master: &str, name: &str) -> Result<Self, RobotError> {
+    pub(super) fn new(master: &str, name: &str) -> Result<Self, RobotError> {
         let unreachable =
             |cause: String| RobotError::Unreachable { master: master.to_owned(), cause };
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build();
@@ -53,7 +52,7 @@ impl Node {
         Ok(Self { handle: Some(handle), runtime: Some(runtime), runner, master })
     }
 
-    pub fn advertise<M: Message>(&self, topic: &str) -> Result<Publisher, RobotError> {
+    pub(super) fn advertise<M: Message>(&self, topic: &str) -> Result<Publisher, RobotError> {
         let handle = self.handle(topic)?;
         let (name, text) = (type_name::<M>(), definition::<M>());
         let advertised = handle.advertise_any(topic, &name, &text, UNDER_WAY, false);
@@ -62,7 +61,7 @@ impl Node {
     }
 
     /// Subscribes to a topic. Messages that cannot be read are counted and skipped.
-    pub fn subscribe<T: Send + 'static>(
+    pub(super) fn subscribe<T: Send + 'static>(
         &self,
         topic: &str,
         read: fn(&[u8]) -> Option<T>,
@@ -70,20 +69,13 @@ impl Node {
         let handle = self.handle(topic)?;
         let subscribed = answered(&self.runner, handle.subscribe_any(topic, UNDER_WAY));
         let mut subscriber = subscribed.map_err(|cause| self.unreachable(cause))?;
-        let last = Last { message: None, unread: 0, closed: false };
-        let shared = Arc::new(Shared { last: Mutex::new(last), news: Condvar::new() });
-        let subscription = Subscription { shared: shared.clone(), topic: topic.to_owned() };
+        let (inbox, subscription) = topic::subscription(topic);
         self.runner.spawn(async move {
             while let Some(message) = subscriber.next().await {
                 // Dropped messages are no error: newer ones follow.
                 let Ok(bytes) = message else { continue };
-                let message = bytes.get(LENGTH..).and_then(read);
-                shared.update(|last| match message {
-                    Some(message) => last.message = Some(message),
-                    None => last.unread += 1,
-                });
+                inbox.add(bytes.get(LENGTH..).and_then(read));
             }
-            shared.update(|last| last.closed = true);
         });
         Ok(subscription)
     }
@@ -125,7 +117,7 @@ impl Drop for Node {
 }
 
 /// A topic to which a node publishes.
-pub struct Publisher {
+pub(super) struct Publisher {
     sender: PublisherAny,
     runner: tokio::runtime::Handle,
     topic: String,
@@ -133,93 +125,10 @@ pub struct Publisher {
 
 impl Publisher {
     /// Publishes the body of a message.
-    pub fn publish(&self, body: &[u8]) -> Result<(), RobotError> {
+    pub(super) fn publish(&self, body: &[u8]) -> Result<(), RobotError> {
         let length = (body.len() as u32).to_le_bytes();
         let message = [&length[..], body].concat();
         let published = self.runner.block_on(self.sender.publish(message));
         published.map_err(|_| RobotError::Closed { topic: self.topic.clone() })
-    }
-}
-
-/// A topic to which a node subscribes.
-#[derive(Debug)]
-pub struct Subscription<T> {
-    shared: Arc<Shared<T>>,
-    topic: String,
-}
-
-impl<T> Clone for Subscription<T> {
-    fn clone(&self) -> Self {
-        Self { shared: self.shared.clone(), topic: self.topic.clone() }
-    }
-}
-
-#[derive(Debug)]
-struct Shared<T> {
-    last: Mutex<Last<T>>,
-    news: Condvar,
-}
-
-#[derive(Debug)]
-struct Last<T> {
-    message: Option<T>,
-    /// The number of messages that could not be read.
-    unread: u64,
-    closed: bool,
-}
-
-impl<T> Shared<T> {
-    fn last(&self) -> MutexGuard<'_, Last<T>> {
-        // The guarded data is valid at any time, even after a panic.
-        self.last.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn update(&self, change: impl FnOnce(&mut Last<T>)) {
-        change(&mut self.last());
-        self.news.notify_all();
-    }
-}
-
-/// Interval at which a waiting thread checks whether the run is to stop.
-const STOP_INTERVAL: Duration = Duration::from_millis(20);
-
-impl<T> Subscription<T> {
-    /// Takes the last message, if it was not taken yet.
-    pub fn take(&self) -> Option<T> {
-        self.shared.last().message.take()
-    }
-
-    /// Waits for messages until `wanted` accepts one.
-    ///
-    /// # Errors
-    /// Returns [`RobotError::Silent`] if none is accepted in time, [`RobotError::Stopped`] if the
-    /// run is to stop, and [`RobotError::Closed`] if no more messages can come.
-    pub fn wait<W>(
-        &self,
-        patience: Duration,
-        stop: fn() -> bool,
-        mut wanted: impl FnMut(T) -> Option<W>,
-    ) -> Result<W, RobotError> {
-        let until = Instant::now() + patience;
-        let mut last = self.shared.last();
-        loop {
-            if stop() {
-                return Err(RobotError::Stopped);
-            }
-            if let Some(found) = last.message.take().and_then(&mut wanted) {
-                return Ok(found);
-            }
-            let topic = || self.topic.clone();
-            if last.closed {
-                return Err(RobotError::Closed { topic: topic() });
-            }
-            let left = until.saturating_duration_since(Instant::now());
-            if left.is_zero() {
-                let (seconds, unread) = (patience.as_secs_f64(), last.unread);
-                return Err(RobotError::Silent { topic: topic(), seconds, unread });
-            }
-            let waited = self.shared.news.wait_timeout(last, left.min(STOP_INTERVAL));
-            last = waited.unwrap_or_else(PoisonError::into_inner).0;
-        }
     }
 }

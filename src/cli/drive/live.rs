@@ -6,8 +6,8 @@ use toposlam_logs::record::RobotSensor;
 use toposlam_model::mapping::{FACING, MappingError};
 use toposlam_robot::{
     explorer::{ExplorerError, RobotExplorer},
-    robot::{Robot, RobotError},
-    ros1::{LiveRobot, LiveSensor, RobotTopics},
+    live::{LiveSensor, RobotTopics},
+    robot::Robot,
     run_settings::{LaserVertices, RunSettings},
 };
 use toposlam_vision::{camera::Camera, colour::ColourModel, sensing::Sensor};
@@ -37,23 +37,21 @@ impl DriveArguments {
         };
         always_stop_gracefully();
         let topics = RobotTopics {
-            master: self.ros.clone(),
             images: self.topic("images"),
             scans: self.topic("scans"),
             marker: self.topic("marker"),
             odometry: self.topic("odometry"),
             wheels: self.topic("wheels"),
         };
-        let robot = match LiveRobot::connect(&topics, live, self.patience, must_stop) {
-            Ok(robot) => robot,
-            Err(RobotError::Stopped) => return Ok(Outcome::Incomplete),
-            Err(error) => return Err(CliError::at("--ros", error)),
+        let place = self.ros.place()?;
+        let Some(robot) = self.ros.connect(&topics, live, self.patience, must_stop)? else {
+            return Ok(Outcome::Incomplete);
         };
         let command = self.given.command(&["toposlam", "drive"]);
         let mut log = self.options.recorder(command, &settings, None, 0, sensors.as_ref())?;
         let story_out: Option<&mut dyn Write> =
             if self.options.json { None } else { Some(&mut *out) };
-        let head = format!("A robot at {}.", self.ros);
+        let head = format!("A robot {place}.");
         let mut capture = RunCapture::new(head, story_out, frame_kind, None)?;
         let mut explorer = RobotExplorer::new(robot, sensor, (&mut log, &mut capture));
         let (mapping, mapped) = explorer.map(&settings);

@@ -1,26 +1,25 @@
-//! A live robot behind the topics of a SuperScout. Section 2.5.
+//! A live robot behind topics. Section 2.5.
 
-use std::{sync::Arc, time::Duration};
+use std::{any::Any, sync::Arc, time::Duration};
 
 use toposlam_logs::{
+    Mount,
     record::{CameraImage, Frame},
-    standard::Twist,
 };
 use toposlam_model::driving::scene::MarkerView;
-use toposlam_vision::laser::scan::Scan;
 
 use super::{
-    RobotTopics,
+    Wheels,
     base::LiveBase,
-    messages::{Nanoseconds, Stamped, read_image, read_marker, read_odometry, read_scan},
-    node::{Node, Subscription},
+    messages::{Nanoseconds, Reckoning, ScanReading, Stamped},
+    topic::Subscription,
 };
 use crate::{
     robot::{Robot, RobotError, Sample, TimedOdometry},
     superscout::{Base, Drive},
 };
 
-/// A robot behind the topics of ROS 1.
+/// A robot behind the topics of ROS 1 or ROS 2.
 ///
 /// It turns and drives with the same control loop as the simulated robot, within a SuperScout's
 /// limits. After an error, and when it is dropped, the last command to its wheels is to stop.
@@ -34,7 +33,7 @@ pub struct LiveRobot {
     base: LiveBase,
     sensor: SensorTopics,
     asked: u64,
-    _node: Node,
+    _node: Box<dyn Any>,
 }
 
 /// What a live robot senses with.
@@ -45,9 +44,22 @@ pub enum LiveSensor {
     Laser,
 }
 
-enum SensorTopics {
+pub(crate) enum SensorTopics {
     Camera(Subscription<Stamped<Vec<u8>>>),
-    Laser { scans: Subscription<Stamped<Scan>>, markers: Subscription<Stamped<MarkerView>> },
+    Laser {
+        scans: Subscription<Stamped<ScanReading>>,
+        /// Where the scanner is on the robot.
+        mount: Mount,
+        markers: Subscription<Stamped<MarkerView>>,
+    },
+}
+
+/// The topics of a robot, and the node to which they belong.
+pub(crate) struct Connection {
+    pub(crate) wheels: Box<dyn Wheels>,
+    pub(crate) odometry: Subscription<Reckoning>,
+    pub(crate) sensor: SensorTopics,
+    pub(crate) node: Box<dyn Any>,
 }
 
 impl LiveRobot {
@@ -57,23 +69,13 @@ impl LiveRobot {
     /// `stop` returns true, the robot stops and does nothing more.
     ///
     /// # Errors
-    /// Returns an error if there is no master or no robot.
-    pub fn connect(
-        topics: &RobotTopics,
-        sensor: LiveSensor,
+    /// Returns an error if there is no robot.
+    pub(crate) fn new(
+        connection: Connection,
         patience: Duration,
         stop: fn() -> bool,
     ) -> Result<Self, RobotError> {
-        let node = Node::new(&topics.master, "/toposlam")?;
-        let odometry = node.subscribe(&topics.odometry, read_odometry)?;
-        let sensor = match sensor {
-            LiveSensor::Camera => SensorTopics::Camera(node.subscribe(&topics.images, read_image)?),
-            LiveSensor::Laser => SensorTopics::Laser {
-                scans: node.subscribe(&topics.scans, read_scan)?,
-                markers: node.subscribe(&topics.marker, read_marker)?,
-            },
-        };
-        let wheels = node.advertise::<Twist>(&topics.wheels)?;
+        let Connection { wheels, odometry, sensor, node } = connection;
         let first = patience.max(FIRST);
         let mut base = LiveBase::new(wheels, odometry, first, stop)?;
         match &sensor {
@@ -106,9 +108,10 @@ impl LiveRobot {
                     Some(Frame { image, ..is_fresh(stamp)? })
                 })
             }
-            SensorTopics::Laser { scans, markers } => {
+            SensorTopics::Laser { scans, mount, markers } => {
                 let scanned = scans.wait(base.patience, base.stop, |Stamped { stamp, content }| {
-                    Some(Frame { scan: Some(Arc::new(content)), ..is_fresh(stamp)? })
+                    let fresh = is_fresh(stamp)?;
+                    Some(Frame { scan: Some(Arc::new(content.scan(mount)?)), ..fresh })
                 });
                 // The marker is reported only where it is seen.
                 scanned.and_then(|frame| {
@@ -134,7 +137,7 @@ impl LiveRobot {
 /// A marker that was seen with a scan is reported within this time after it.
 const MARKER_DELAY: Duration = Duration::from_millis(250);
 /// The longest time until nodes have found each other.
-const FIRST: Duration = Duration::from_secs(10);
+pub(crate) const FIRST: Duration = Duration::from_secs(10);
 
 impl Robot for LiveRobot {
     fn capture(&mut self) -> Result<Frame, RobotError> {

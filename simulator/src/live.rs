@@ -1,26 +1,14 @@
-//! A simulated robot as a ROS 1 node. To its driver it looks like a live robot.
+//! A simulated robot behind topics. To its driver it looks like a live robot.
 
 use std::{
     thread,
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 
-use toposlam_logs::{
-    record::Frame,
-    recorder,
-    standard::{
-        CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped, TFMessage,
-    },
-};
+use toposlam_logs::record::Frame;
 use toposlam_robot::{
+    live::{Nanoseconds, Reckoning, SECOND, ServedRobot},
     robot::RobotError,
-    ros1::{
-        RobotTopics,
-        messages::{
-            Nanoseconds, Reckoning, SECOND, frames, image, marker, odometry, read_twist, scan,
-        },
-        node::{Node, Publisher, Subscription},
-    },
     superscout::{Base, WheelSpeeds},
 };
 
@@ -51,24 +39,12 @@ pub struct ServeSummary {
 /// after the last command. Time stamps begin at the present time.
 pub fn serve(
     robot: SimulatedRobot,
-    topics: &RobotTopics,
+    topics: &dyn ServedRobot,
     speed: f64,
     stop: impl Fn() -> bool,
 ) -> Result<ServeSummary, RobotError> {
-    let node = Node::new(&topics.master, "/toposlam_simulator")?;
-    let mut scout = Scout {
-        commands: node.subscribe(&topics.wheels, read_twist)?,
-        odometry: node.advertise::<OdometryMessage>(&topics.odometry)?,
-        frames: node.advertise::<TFMessage>(recorder::TF)?,
-        images: node.advertise::<CompressedImage<FileBytes>>(&topics.images)?,
-        scans: node.advertise::<LaserScanMessage<&[f32]>>(&topics.scans)?,
-        markers: node.advertise::<PoseStamped>(&topics.marker)?,
-        epoch: now(),
-        ignores: false,
-        exposed: None,
-        next_image: 0.0,
-        robot,
-    };
+    let mut scout =
+        Scout { topics, epoch: now(), ignores: false, exposed: None, next_image: 0.0, robot };
     let begun = Instant::now();
     let tick = Duration::from_secs_f64(TICK / speed.clamp(0.01, MOST_SPEED));
     let mut due = begun;
@@ -89,13 +65,8 @@ fn now() -> Nanoseconds {
     since.as_secs() * SECOND
 }
 
-struct Scout {
-    commands: Subscription<WheelSpeeds>,
-    odometry: Publisher,
-    scans: Publisher,
-    markers: Publisher,
-    frames: Publisher,
-    images: Publisher,
+struct Scout<'t> {
+    topics: &'t dyn ServedRobot,
     /// The stamp of its time 0.
     epoch: Nanoseconds,
     /// Whether the present motion is ignored.
@@ -106,10 +77,10 @@ struct Scout {
     robot: SimulatedRobot,
 }
 
-impl Scout {
+impl Scout<'_> {
     /// Advances by one tick, with this number.
     fn tick(&mut self, number: u64) -> Result<(), RobotError> {
-        if let Some(wheels) = self.commands.take() {
+        if let Some(wheels) = self.topics.command() {
             self.command(wheels);
         }
         self.robot.base.wait(TICK);
@@ -139,8 +110,7 @@ impl Scout {
         let base = &self.robot.base;
         let (reading, wheels) = (base.reading(), base.wheels());
         let reckoning = Reckoning { stamp: self.stamp(reading.time), at: reading.odometry, wheels };
-        self.odometry.publish(&odometry(number, &reckoning))?;
-        self.frames.publish(&frames(number, &reckoning))
+        self.topics.odometry(number, &reckoning)
     }
 
     /// Takes an image if one is due, and publishes it when it has arrived.
@@ -150,13 +120,13 @@ impl Scout {
             let number = self.robot.frames() as u32;
             let stamp = self.stamp(exposed.taken);
             if let Some(file) = exposed.image.as_ref().and_then(|image| image.file()) {
-                self.images.publish(&image(number, stamp, file))?;
+                self.topics.image(number, stamp, file)?;
             }
             if let Some(seen) = &exposed.marker {
-                self.markers.publish(&marker(number, stamp, seen))?;
+                self.topics.marker(number, stamp, seen)?;
             }
             if let Some(sweep) = &exposed.scan {
-                self.scans.publish(&scan(number, stamp, sweep))?;
+                self.topics.scan(number, stamp, sweep)?;
             }
         }
         if time >= self.next_image {

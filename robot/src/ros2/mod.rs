@@ -1,0 +1,224 @@
+//! A SuperScout behind the topics of ROS 2, over DDS. Section 2.5. The robot and its driver find each other in a domain.
+//!
+//! Unless [`Place::network`] is set, only robots on this machine are found.
+
+mod messages;
+mod node;
+
+use std::{
+    sync::{Arc, Mutex, PoisonError},
+    thread::sleep,
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+};
+
+use toposlam_logs::{
+    FrameTree, Mount,
+    message::Message,
+    recorder,
+    standard::{
+        Clock, CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped,
+        TFMessage,
+    },
+};
+use toposlam_model::driving::scene::MarkerView;
+use toposlam_vision::laser::scan::Scan;
+
+use self::{
+    messages::FrameReader,
+    node::{Node, OtherSide, Writer},
+};
+use crate::{
+    live::{
+        Connection, FIRST, LiveRobot, LiveSensor, Nanoseconds, Reckoning, RobotTopics, SECOND,
+        SensorTopics, ServedRobot, Wheels,
+        messages::{ScanReading, Stamped},
+        topic::Subscription,
+    },
+    robot::RobotError,
+    superscout::WheelSpeeds,
+};
+
+pub use messages::WheelsType;
+pub use node::Place;
+
+/// Static transforms are sent to late nodes within this time.
+const TRANSFORMS: Duration = Duration::from_secs(6);
+const STATIC_FRAMES: &str = "/tf_static";
+const CLOCK: &str = "/clock";
+
+/// The robot behind topics, as soon as odometry and an image, or a scan, have come. Transforms say where its scanner is.
+///
+/// The type of the commands to the wheels is the one that the robot reads, unless it is given. `patience` is the longest
+/// time without odometry, and without an image if one is expected. If `stop` returns true, the robot stops and does nothing
+/// more.
+///
+/// # Errors
+/// Returns an error if there is no robot, if a topic has another type, or if the scanner's place is not known.
+pub fn connect(
+    place: &Place,
+    topics: &RobotTopics,
+    sensor: LiveSensor,
+    wheels_type: Option<WheelsType>,
+    patience: Duration,
+    stop: fn() -> bool,
+) -> Result<LiveRobot, RobotError> {
+    let node = Node::new(place)?;
+    let published = |topic: &str, kind| {
+        node.type_of(topic, OtherSide::Publishes, &[kind], FIRST, stop).map(drop)
+    };
+    let odometry_type = <OdometryMessage as Message>::TYPE;
+    published(&topics.odometry, odometry_type)?;
+    let odometry = node.subscribe(&topics.odometry, odometry_type, messages::read_odometry)?;
+    let sensor = match sensor {
+        LiveSensor::Camera => {
+            let kind = <CompressedImage<FileBytes> as Message>::TYPE;
+            published(&topics.images, kind)?;
+            SensorTopics::Camera(node.subscribe(&topics.images, kind, messages::read_image)?)
+        }
+        LiveSensor::Laser => {
+            let kind = <LaserScanMessage<&[f32]> as Message>::TYPE;
+            published(&topics.scans, kind)?;
+            let scans = node.subscribe(&topics.scans, kind, messages::read_scan)?;
+            let mount = scanner_mount(&node, &scans, stop)?;
+            let kind = <PoseStamped as Message>::TYPE;
+            let markers = node.subscribe(&topics.marker, kind, messages::read_marker)?;
+            SensorTopics::Laser { scans, mount, markers }
+        }
+    };
+    let wheels_type = match wheels_type {
+        Some(given) => given,
+        None => wheels_type_of(&node, &topics.wheels, stop)?,
+    };
+    let writer = node.advertise(&topics.wheels, wheels_type.type_name())?;
+    let wheels = Box::new(WheelsTopic { wheels_type, writer });
+    let connection = Connection { wheels, odometry, sensor, node: Box::new(node) };
+    LiveRobot::new(connection, patience, stop)
+}
+
+/// The type of the commands that the robot reads.
+fn wheels_type_of(node: &Node, topic: &str, stop: fn() -> bool) -> Result<WheelsType, RobotError> {
+    let known = WheelsType::ALL.map(WheelsType::type_name);
+    let found = node.type_of(topic, OtherSide::Reads, &known, FIRST, stop);
+    let found = found.map_err(|error| match error {
+        RobotError::OtherType { topic, theirs, .. } if theirs.contains(" and ") => {
+            let ours = "one of them; --cmd-vel-type says which".to_owned();
+            RobotError::OtherType { topic, theirs, ours }
+        }
+        error => error,
+    })?;
+    let kind = WheelsType::ALL.into_iter().find(|kind| kind.type_name() == found);
+    Ok(kind.unwrap_or(WheelsType::Twist))
+}
+
+/// Where the scanner of a topic is on the robot, by its transforms.
+fn scanner_mount(
+    node: &Node,
+    scans: &Subscription<Stamped<ScanReading>>,
+    stop: fn() -> bool,
+) -> Result<Mount, RobotError> {
+    let frames = Arc::new(Mutex::new(FrameTree::default()));
+    for (topic, stays) in [(STATIC_FRAMES, true), (recorder::TF, false)] {
+        let (frames, reader) = (frames.clone(), FrameReader::new());
+        node.listen(topic, <TFMessage as Message>::TYPE, stays, move |message| {
+            let mut frames = frames.lock().unwrap_or_else(PoisonError::into_inner);
+            // Others' transforms of another form say nothing about this scanner.
+            let _ = message.and_then(|body| reader.add(&body, &mut frames));
+        })?;
+    }
+    let frame = scans.wait(FIRST, stop, |scan| Some(scan.content.frame))?;
+    let until = Instant::now() + TRANSFORMS;
+    loop {
+        if stop() {
+            return Err(RobotError::Stopped);
+        }
+        let found = frames.lock().unwrap_or_else(PoisonError::into_inner).scanner_mount(&frame);
+        let no_mount = |cause: String| RobotError::NoMount { frame: frame.clone(), cause };
+        match found {
+            Ok(Some(mount)) => return Ok(mount),
+            Err(cause) => return Err(no_mount(cause)),
+            Ok(None) if Instant::now() > until => {
+                let cause = format!(
+                    "no transform of {STATIC_FRAMES} or {} leads from it to base_link, base_footprint or base; \
+                     publish one with static_transform_publisher",
+                    recorder::TF
+                );
+                return Err(no_mount(cause));
+            }
+            Ok(None) => sleep(Duration::from_millis(20)),
+        }
+    }
+}
+
+struct WheelsTopic {
+    wheels_type: WheelsType,
+    writer: Writer,
+}
+
+impl Wheels for WheelsTopic {
+    fn command(&self, wheels: WheelSpeeds) -> Result<(), RobotError> {
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let stamp = now.as_secs() * SECOND + u64::from(now.subsec_nanos());
+        self.writer.publish(self.wheels_type.body(stamp, wheels))
+    }
+}
+
+/// The topics of a simulated robot. `/clock` has its time.
+pub struct ServedTopics {
+    commands: Subscription<WheelSpeeds>,
+    odometry: Writer,
+    frames: Writer,
+    images: Writer,
+    scans: Writer,
+    markers: Writer,
+    clock: Writer,
+    // The last field: it is dropped after its writers.
+    _node: Node,
+}
+
+impl ServedTopics {
+    /// # Errors
+    /// Returns an error if DDS cannot be used.
+    pub fn new(
+        place: &Place,
+        topics: &RobotTopics,
+        wheels_type: WheelsType,
+    ) -> Result<Self, RobotError> {
+        let node = Node::new(place)?;
+        let read = move |body: &messages::Body| wheels_type.read(body);
+        Ok(Self {
+            commands: node.subscribe(&topics.wheels, wheels_type.type_name(), read)?,
+            odometry: node.advertise(&topics.odometry, <OdometryMessage as Message>::TYPE)?,
+            frames: node.advertise(recorder::TF, <TFMessage as Message>::TYPE)?,
+            images: node
+                .advertise(&topics.images, <CompressedImage<FileBytes> as Message>::TYPE)?,
+            scans: node.advertise(&topics.scans, <LaserScanMessage<&[f32]> as Message>::TYPE)?,
+            markers: node.advertise(&topics.marker, <PoseStamped as Message>::TYPE)?,
+            clock: node.advertise(CLOCK, <Clock as Message>::TYPE)?,
+            _node: node,
+        })
+    }
+}
+
+impl ServedRobot for ServedTopics {
+    fn command(&self) -> Option<WheelSpeeds> {
+        self.commands.take()
+    }
+
+    fn odometry(&self, _: u32, reckoning: &Reckoning) -> Result<(), RobotError> {
+        self.clock.publish(messages::clock(reckoning.stamp))?;
+        self.odometry.publish(messages::odometry(reckoning))?;
+        self.frames.publish(messages::frames(reckoning))
+    }
+
+    fn image(&self, _: u32, stamp: Nanoseconds, file: &[u8]) -> Result<(), RobotError> {
+        self.images.publish(messages::image(stamp, file))
+    }
+
+    fn scan(&self, _: u32, stamp: Nanoseconds, scan: &Scan) -> Result<(), RobotError> {
+        self.scans.publish(messages::scan(stamp, scan))
+    }
+
+    fn marker(&self, _: u32, stamp: Nanoseconds, seen: &MarkerView) -> Result<(), RobotError> {
+        self.markers.publish(messages::marker(stamp, seen))
+    }
+}

@@ -1,0 +1,345 @@
+//! A node of ROS 2 for blocking programs: DDS topics to which it publishes, and the last message of each topic to which it
+//! subscribes.
+//!
+//! RustDDS connects topics by their names alone, so the type of a topic is looked up before there is an endpoint of ours, and
+//! there is only one.
+
+use std::{
+    collections::BTreeSet,
+    convert::Infallible,
+    net::{IpAddr, Ipv4Addr},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use futures::StreamExt;
+use rustdds::{
+    DomainParticipant, DomainParticipantBuilder, Publisher, QosPolicies, QosPolicyBuilder,
+    RepresentationIdentifier, Subscriber, Topic, TopicKind,
+    bytes::Bytes,
+    dds::qos::policy::{DataRepresentation, DataRepresentationId},
+    no_key::{
+        DataReader, DataWriter, Decode, DefaultDecoder, DeserializerAdapter, SerializerAdapter,
+    },
+    policy::{Durability, History, Reliability},
+};
+use tokio::runtime::{Builder, Runtime};
+
+use super::messages::Body;
+use crate::{
+    live::topic::{self, Subscription},
+    robot::RobotError,
+};
+
+/// The number of messages that are kept.
+const DEPTH: i32 = 10;
+/// The time for the last messages to leave before the node is gone.
+const LEAVE: Duration = Duration::from_millis(200);
+/// Interval of looks at what was discovered.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Where the topics of a robot are.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    pub domain: u16,
+    /// The namespace of the robot's topics, as in `/robot1`; empty for none.
+    pub namespace: String,
+    /// Whether robots on the network are reached, and not only those on this machine.
+    pub network: bool,
+}
+
+pub(super) struct Node {
+    place: Place,
+    publisher: Publisher,
+    subscriber: Subscriber,
+    participant: DomainParticipant,
+    /// `None` once it is dropped.
+    runtime: Option<Runtime>,
+}
+
+fn no_dds(cause: impl ToString) -> RobotError {
+    RobotError::NoDds { cause: cause.to_string() }
+}
+
+/// What is read: any message is accepted.
+fn best_effort() -> QosPolicies {
+    let builder = QosPolicyBuilder::new().reliability(Reliability::BestEffort);
+    builder.durability(Durability::Volatile).history(History::KeepLast { depth: DEPTH }).build()
+}
+
+/// What is written: it arrives. Late readers get the last message if it `stays`.
+fn reliable(stays: bool) -> QosPolicies {
+    let max_blocking_time = rustdds::Duration::from_millis(100);
+    let durability = if stays { Durability::TransientLocal } else { Durability::Volatile };
+    let builder = QosPolicyBuilder::new().reliability(Reliability::Reliable { max_blocking_time });
+    builder.durability(durability).history(History::KeepLast { depth: DEPTH }).build()
+}
+
+impl Node {
+    pub(super) fn new(place: &Place) -> Result<Self, RobotError> {
+        let builder = DomainParticipantBuilder::new(place.domain);
+        let builder = if place.network {
+            builder
+        } else {
+            builder.with_only_networks([IpAddr::V4(Ipv4Addr::LOCALHOST)])
+        };
+        let participant = builder.build().map_err(no_dds)?;
+        let publisher = participant.create_publisher(&reliable(false)).map_err(no_dds)?;
+        let subscriber = participant.create_subscriber(&best_effort()).map_err(no_dds)?;
+        let runtime = Builder::new_multi_thread().worker_threads(1).build().map_err(no_dds)?;
+        Ok(Self {
+            place: place.clone(),
+            publisher,
+            subscriber,
+            participant,
+            runtime: Some(runtime),
+        })
+    }
+
+    /// The name of a topic in DDS; those of the whole system have no namespace.
+    fn dds_name(&self, topic: &str) -> String {
+        let namespace = self.place.namespace.trim_matches('/');
+        let topic = topic.trim_start_matches('/');
+        if namespace.is_empty() { format!("rt/{topic}") } else { format!("rt/{namespace}/{topic}") }
+    }
+
+    fn topic(&self, name: &str, type_name: &str, qos: &QosPolicies) -> Result<Topic, RobotError> {
+        let name = self.dds_name(name);
+        let type_name = dds_type(type_name);
+        self.participant.create_topic(name, type_name, qos, TopicKind::NoKey).map_err(no_dds)
+    }
+
+    pub(super) fn advertise(&self, topic: &str, type_name: &str) -> Result<Writer, RobotError> {
+        let qos = reliable(false);
+        let of = self.topic(topic, type_name, &qos)?;
+        let writer = self.publisher.create_datawriter_no_key::<Vec<u8>, AsItIs>(&of, Some(qos));
+        Ok(Writer { writer: writer.map_err(no_dds)?, topic: topic.to_owned() })
+    }
+
+    /// Calls a function with each message of a topic. Transforms that stay are sent again to those who come later.
+    pub(super) fn listen(
+        &self,
+        topic: &str,
+        type_name: &str,
+        stays: bool,
+        mut heard: impl FnMut(Option<Body>) + Send + 'static,
+    ) -> Result<(), RobotError> {
+        let qos = if stays { reliable(true) } else { best_effort() };
+        let of = self.topic(topic, type_name, &qos)?;
+        let reader: DataReader<Body, AsItIs> =
+            self.subscriber.create_datareader_no_key(&of, Some(qos)).map_err(no_dds)?;
+        if let Some(runtime) = &self.runtime {
+            runtime.spawn(async move {
+                let mut messages = reader.async_bare_sample_stream();
+                while let Some(message) = messages.next().await {
+                    heard(message.ok());
+                }
+            });
+        }
+        Ok(())
+    }
+
+    /// Subscribes to a topic. Messages that cannot be read are counted and skipped.
+    pub(super) fn subscribe<T: Send + 'static>(
+        &self,
+        topic: &str,
+        type_name: &str,
+        read: impl Fn(&Body) -> Option<T> + Send + 'static,
+    ) -> Result<Subscription<T>, RobotError> {
+        let (inbox, subscription) = topic::subscription(topic);
+        self.listen(topic, type_name, false, move |message| {
+            inbox.add(message.and_then(|body| read(&body)));
+        })?;
+        Ok(subscription)
+    }
+
+    /// The type of a topic that somebody else publishes, or reads: one of these types of ROS.
+    ///
+    /// # Errors
+    /// Returns an error if there is nobody, or if the topic has another type, or another encoding than plain CDR.
+    pub(super) fn type_of(
+        &self,
+        topic: &str,
+        side: OtherSide,
+        known: &[&'static str],
+        patience: Duration,
+        stop: fn() -> bool,
+    ) -> Result<&'static str, RobotError> {
+        let name = self.dds_name(topic);
+        let until = Instant::now() + patience;
+        let ours = || known.join(" or ");
+        loop {
+            if stop() {
+                return Err(RobotError::Stopped);
+            }
+            let endpoints = self.endpoints(&name, side);
+            let other = |theirs: String| {
+                Err(RobotError::OtherType { topic: topic.to_owned(), theirs, ours: ours() })
+            };
+            let types: BTreeSet<_> = endpoints.iter().map(|(kind, _)| ros_type(kind)).collect();
+            let types: Vec<_> = types.iter().map(String::as_str).collect();
+            match types[..] {
+                [] if Instant::now() > until => {
+                    let (does, seconds) = (side.verb(), patience.as_secs_f64());
+                    let (topic, domain) = (topic.to_owned(), self.place.domain);
+                    return Err(RobotError::Nobody { does, topic, domain, seconds });
+                }
+                [] => {}
+                [only] => {
+                    let Some(kind) = known.iter().find(|kind| **kind == only) else {
+                        return other(only.to_owned());
+                    };
+                    return match endpoints.into_iter().find_map(|(_, obstacle)| obstacle) {
+                        Some(obstacle) => other(format!("{kind} {obstacle}")),
+                        None => Ok(kind),
+                    };
+                }
+                _ => return other(types.join(" and ")),
+            }
+            sleep(LOOK);
+        }
+    }
+
+    /// The type of each endpoint of a topic that others have, and why no message would pass between it and ours, if none
+    /// would.
+    fn endpoints(&self, name: &str, side: OtherSide) -> Vec<(String, Option<String>)> {
+        match side {
+            OtherSide::Publishes => {
+                let all = self.participant.discovered_writers().into_iter();
+                let of_topic = all.map(|writer| writer.publication_topic_data);
+                let described = of_topic.filter(|found| found.topic_name == name).map(|found| {
+                    let written = found.data_representation.as_ref();
+                    let is_plain = DataRepresentation::offered_representation(written) == PLAIN;
+                    (found.type_name, (!is_plain).then(|| "in the encoding XCDR2".to_owned()))
+                });
+                described.collect()
+            }
+            OtherSide::Reads => {
+                let all = self.participant.discovered_readers().into_iter();
+                let of_topic = all.map(|reader| reader.subscription_topic_data);
+                let described = of_topic.filter(|found| *found.topic_name() == name).map(|found| {
+                    let misfit = reliable(false).compliance_failure_wrt(&found.qos());
+                    let obstacle = misfit.map(|policy| format!("with another {policy:?}"));
+                    (found.type_name().clone(), obstacle)
+                });
+                described.collect()
+            }
+        }
+    }
+}
+
+/// Plain CDR, in lists of encodings (DDS-XTypes 7.6.3.1.1).
+const PLAIN: DataRepresentationId = 0;
+
+/// Who has the other end of a topic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum OtherSide {
+    Publishes,
+    Reads,
+}
+
+impl OtherSide {
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Publishes => "publishes",
+            Self::Reads => "reads",
+        }
+    }
+}
+
+/// The name of a type of ROS in DDS.
+fn dds_type(ros: &str) -> String {
+    match ros.rsplit_once('/') {
+        Some((package, name)) => format!("{}::dds_::{name}_", package.replace('/', "::")),
+        None => ros.to_owned(),
+    }
+}
+
+/// The name in ROS of a type in DDS.
+fn ros_type(dds: &str) -> String {
+    dds.replace("dds_::", "").trim_end_matches('_').replace("::", "/")
+}
+
+impl Drop for Node {
+    fn drop(&mut self) {
+        sleep(LEAVE);
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_timeout(LEAVE);
+        }
+    }
+}
+
+/// A topic to which a node publishes.
+pub(super) struct Writer {
+    writer: DataWriter<Vec<u8>, AsItIs>,
+    topic: String,
+}
+
+impl Writer {
+    /// Publishes the body of a message.
+    pub(super) fn publish(&self, body: Vec<u8>) -> Result<(), RobotError> {
+        let closed = |_| RobotError::Closed { topic: self.topic.clone() };
+        self.writer.write(body, None).map_err(closed)
+    }
+}
+
+/// Messages are read and written as they are; [`messages`](super::messages) knows their encoding.
+struct AsItIs;
+
+impl DeserializerAdapter<Body> for AsItIs {
+    type Error = Infallible;
+    type Decoded = Body;
+
+    fn supported_encodings() -> &'static [RepresentationIdentifier] {
+        &[RepresentationIdentifier::CDR_LE, RepresentationIdentifier::CDR_BE]
+    }
+
+    fn transform_decoded(body: Body) -> Body {
+        body
+    }
+}
+
+impl DefaultDecoder<Body> for AsItIs {
+    type Decoder = Copied;
+
+    const DECODER: Copied = Copied;
+}
+
+#[derive(Clone)]
+struct Copied;
+
+impl Decode<'_, Body> for Copied {
+    type Error = Infallible;
+
+    fn decode_bytes(
+        self,
+        bytes: &[u8],
+        encoding: RepresentationIdentifier,
+    ) -> Result<Body, Infallible> {
+        Ok(Body { encoding, bytes: bytes.to_owned() })
+    }
+}
+
+impl SerializerAdapter<Vec<u8>> for AsItIs {
+    type Error = Infallible;
+
+    fn output_encoding() -> RepresentationIdentifier {
+        RepresentationIdentifier::CDR_LE
+    }
+
+    fn to_bytes(body: &Vec<u8>) -> Result<Bytes, Infallible> {
+        Ok(Bytes::copy_from_slice(body))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn types_have_the_names_of_ros_2() {
+        let (ros, dds) =
+            ("geometry_msgs/msg/TwistStamped", "geometry_msgs::msg::dds_::TwistStamped_");
+        assert_eq!((dds_type(ros).as_str(), ros_type(dds).as_str()), (dds, ros));
+    }
+}

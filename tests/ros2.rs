@@ -1,0 +1,257 @@
+//! A robot behind the topics of ROS 2, over DDS: `toposlam drive --ros2` drives the simulated one of `toposlam simulate
+//! --ros2`, and Cyclone DDS, another implementation, listens and publishes. Sections 2.5 and 6.
+//!
+//! Everything is on loopback. Where the Python package cyclonedds is not installed its tests are skipped, with a message,
+//! unless `TOPOSLAM_ROS` is `required`.
+
+#![cfg(all(feature = "ros2", unix))]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+#[allow(dead_code, reason = "other programs use the rest")]
+mod output;
+mod process;
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::{Mutex, MutexGuard, PoisonError},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use mcap::MessageStream;
+use output::{stderr, stdout};
+use process::{Process, until};
+
+/// How many times faster the simulated time is than the real time.
+const SPEED: &str = "8";
+
+/// Cyclone DDS finds no others than those on loopback, by asking them one by one.
+const CYCLONE: &str = "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" \
+     multicast=\"false\"/></Interfaces></General><Discovery><ParticipantIndex>auto</ParticipantIndex>\
+     <Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>";
+
+/// Two robots at a time would be too slow.
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// A folder and a domain for a test.
+struct Stage {
+    folder: PathBuf,
+    domain: String,
+    _alone: MutexGuard<'static, ()>,
+}
+
+impl Stage {
+    fn new(name: &str) -> Self {
+        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        // Other than the usual one, and than that of another run of these tests.
+        let domain = 20 + std::process::id() % 200;
+        let folder = output::folder(&format!("ros2-{name}"));
+        Self { folder, domain: domain.to_string(), _alone: alone }
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.folder.join(name).display().to_string()
+    }
+
+    fn toposlam(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_toposlam"));
+        command.current_dir(env!("CARGO_MANIFEST_DIR")).args(arguments).stdin(Stdio::null());
+        command.env("ROS_DOMAIN_ID", &self.domain);
+        command
+    }
+
+    fn out(&self, arguments: &[&str]) -> String {
+        let output = self.toposlam(arguments).output().unwrap();
+        assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+        stdout(&output)
+    }
+
+    /// A simulated robot with a laser scanner in a building without clutter.
+    fn simulate(&self, more: &[&str]) -> Process {
+        fs::write(self.folder.join("plain.toml"), "furniture = 0\ndoors = 0\npeople = 0\n")
+            .unwrap();
+        let plain = self.path("plain.toml");
+        let simulate = ["simulate", "worlds/shape-6.toml", "--seed", "3", "--ros2"];
+        let seen = ["--speed", SPEED, "--sensor", "laser", "--scanner", &plain];
+        let output = fs::File::create(self.folder.join("robot")).unwrap();
+        let arguments = [&simulate[..], &seen, more].concat();
+        Process::start(self.toposlam(&arguments).stdout(output))
+    }
+
+    fn drive(&self, more: &[&str]) -> Process {
+        let [log, map] = [self.path("run.mcap"), self.path("map.toml")];
+        let drive =
+            ["drive", "--ros2", "--sensor", "laser", "--log", &log, "--map", &map, "--json"];
+        let mut command = self.toposlam(&[&drive[..], more].concat());
+        Process::start(command.stdout(Stdio::piped()).stderr(Stdio::piped()))
+    }
+
+    /// A participant by Cyclone DDS; `None` where it is not installed.
+    fn peer(&self, verb: &str, what: &str) -> Option<Process> {
+        let has = Command::new("python3").args(["-c", "import cyclonedds"]).output().unwrap();
+        if !has.status.success() {
+            assert_ne!(env::var("TOPOSLAM_ROS").as_deref(), Ok("required"), "{}", stderr(&has));
+            eprintln!("skipped: the Python package cyclonedds is not installed");
+            return None;
+        }
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2/peer.py");
+        let mut command = Command::new("python3");
+        command.arg(script).args([verb, what]).stdin(Stdio::null());
+        command.env("ROS_DOMAIN_ID", &self.domain).env("CYCLONEDDS_URI", CYCLONE);
+        Some(Process::start(command.stdout(fs::File::create(self.folder.join("peer")).unwrap())))
+    }
+
+    /// The lines of a file that begin with a word.
+    fn lines(&self, file: &str, word: &str) -> Vec<String> {
+        let text = fs::read_to_string(self.folder.join(file)).unwrap_or_default();
+        text.lines().filter(|line| line.starts_with(word)).map(str::to_owned).collect()
+    }
+
+    /// The last message of the log.
+    fn end(&self) -> String {
+        let log = fs::read(self.folder.join("run.mcap")).unwrap();
+        let last = MessageStream::new(&log).unwrap().map(Result::unwrap).last().unwrap();
+        assert_eq!(last.channel.topic, "/toposlam/end");
+        String::from_utf8_lossy(&last.data).into_owned()
+    }
+}
+
+/// The robot reads one of the types of commands; the driver finds out which.
+#[test]
+fn the_whole_of_shape_6_is_mapped_by_laser_over_dds() {
+    let stage = Stage::new("mapped");
+    let listener = stage.peer("listen", &stage.path("received"));
+    let robot = stage.simulate(&[]);
+    let begun = Instant::now();
+    let output = stage.drive(&[]).ends_within(600);
+    eprintln!("mapped in {:.0} s", begun.elapsed().as_secs_f64());
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    let compared =
+        stage.out(&["compare", "worlds/shape-6.toml", &stage.path("map.toml"), "--json"]);
+    assert!(compared.contains("\"isomorphic\":true"), "{compared}");
+    assert!(compared.contains("\"distinguishable\":false"), "{compared}");
+    assert!(stage.end().contains("mapped\0"), "{}", stage.end());
+    let judged = stage.out(&["conform", &stage.path("run.mcap"), "--world", "worlds/shape-6.toml"]);
+    assert!(judged.contains("conforms"), "{judged}");
+    robot.signal("-INT");
+    assert!(robot.ends_within(20).status.success());
+    if listener.is_some() {
+        // Cyclone DDS has read the same topics; it writes the last message soon.
+        sleep(Duration::from_secs(1));
+        assert!(stage.lines("received", "/odom ").len() > 1000);
+        assert!(stage.lines("received", "/scan 360 base_link").len() > 50);
+        let wheels = stage.lines("received", "/cmd_vel");
+        let speeds = |line: &String| -> Vec<f64> {
+            line.split(' ').skip(1).map(|word| word.parse().unwrap()).collect()
+        };
+        assert_eq!(wheels.last().map(speeds), Some(vec![0.0, 0.0]));
+        for wheels in wheels.iter().map(speeds) {
+            assert!(wheels[0].abs() <= 0.2 + 1e-9 && wheels[1].abs() <= 0.3491, "{wheels:?}");
+        }
+    }
+}
+
+#[test]
+fn a_robot_in_a_namespace_that_reads_stamped_commands_moves_and_stands_after_ctrl_c() {
+    let stage = Stage::new("stamped");
+    let space = ["--namespace", "robot1"];
+    let robot = stage.simulate(&[&space[..], &["--cmd-vel-type", "TwistStamped"]].concat());
+    let drive = stage.drive(&space);
+    until("the run begins", 60, || stage.folder.join("run.mcap").exists());
+    // Time for a few moves.
+    sleep(Duration::from_secs(5));
+    drive.signal("-INT");
+    // A second interrupt changes nothing.
+    drive.signal("-INT");
+    let output = drive.ends_within(30);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(stage.end().contains("stopped\0"), "{}", stage.end());
+    let topics = stage.out(&["info", &stage.path("run.mcap")]);
+    assert!(topics.contains("/toposlam/command"), "{topics}");
+    drop(robot);
+}
+
+#[test]
+fn a_silent_robot_is_given_up() {
+    let stage = Stage::new("silent");
+    let robot = stage.simulate(&[]);
+    let drive = stage.drive(&[]);
+    until("the run begins", 60, || stage.folder.join("run.mcap").exists());
+    sleep(Duration::from_secs(3));
+    // Its process is suspended; no connection is closed.
+    robot.signal("-STOP");
+    let output = drive.ends_within(60);
+    robot.signal("-CONT");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let end = stage.end();
+    assert!(end.contains("gave-up\0") && end.contains("no message on /odom"), "{end}");
+}
+
+#[test]
+fn what_is_missing_or_of_another_type_is_said() {
+    let stage = Stage::new("wrong");
+    let refused = |stage: &Stage, more: &[&str]| {
+        let output = stage.drive(more).ends_within(60);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let nobody = format!("nobody publishes /odom in domain {}, 10 s long", stage.domain);
+    let said = refused(&stage, &[]);
+    assert!(said.contains(&nobody), "{said}");
+    for (verb, what, expected) in [
+        (
+            "publish",
+            "twist-type",
+            "/scan of the robot is geometry_msgs/msg/Twist; this program needs sensor_msgs/msg/LaserScan",
+        ),
+        (
+            "publish",
+            "xcdr2",
+            "/scan of the robot is sensor_msgs/msg/LaserScan in the encoding XCDR2",
+        ),
+        (
+            "publish",
+            "no-frame",
+            "the scanner's frame `laser` is not connected to the robot: no transform",
+        ),
+        ("publish", "plain", "nobody reads /cmd_vel"),
+        (
+            "read",
+            "both",
+            "/cmd_vel of the robot is geometry_msgs/msg/Twist and geometry_msgs/msg/TwistStamped; this program needs one of them; --cmd-vel-type says which",
+        ),
+    ] {
+        let Some(peer) = stage.peer(verb, what) else { return };
+        let said = refused(&stage, &[]);
+        assert!(said.contains(expected), "{what}: {said}");
+        drop(peer);
+    }
+}
+
+/// The robot is one of Cyclone DDS that does not move.
+#[test]
+fn the_type_of_commands_is_the_one_that_the_robot_reads_and_no_other_is_sent() {
+    for twist in ["Twist", "TwistStamped"] {
+        let stage = Stage::new(twist);
+        let Some(peer) = stage.peer("read", twist) else { return };
+        let output = stage.drive(&["--patience", "1"]).ends_within(120);
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        drop(peer);
+        let read = stage.lines("peer", "Twist");
+        assert!(!read.is_empty() && read.iter().all(|kind| kind == twist), "{read:?}");
+    }
+}
+
+#[test]
+fn a_domain_is_a_number_that_has_ports() {
+    let stage = Stage::new("domain");
+    for domain in ["233", "-1", "one"] {
+        let mut command = stage.toposlam(&["drive", "--ros2", "--sensor", "laser"]);
+        let output = command.env("ROS_DOMAIN_ID", domain).output().unwrap();
+        let expected = format!("ROS_DOMAIN_ID: expected a number from 0 to 232, found {domain}");
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(&expected), "{}", stderr(&output));
+    }
+}
