@@ -1,6 +1,7 @@
 //! Where the topics of a robot are: at a master of ROS 1, or in a domain of ROS 2.
 
-use std::env;
+#[cfg(any(feature = "ros1", feature = "ros2"))]
+use std::{env, time::Duration};
 
 use clap::ValueEnum;
 #[cfg(any(feature = "ros1", feature = "ros2"))]
@@ -54,6 +55,7 @@ enum CommandType {
 }
 
 /// The largest number of a domain: the ports of others are those of other programs.
+#[cfg(any(feature = "ros1", feature = "ros2"))]
 const MOST_DOMAINS: u16 = 232;
 
 impl RosOptions {
@@ -62,6 +64,7 @@ impl RosOptions {
     }
 
     /// Where the topics are, in words.
+    #[cfg(any(feature = "ros1", feature = "ros2"))]
     pub(super) fn place(&self) -> Result<String, CliError> {
         match &self.ros {
             Some(master) => Ok(format!("at {master}")),
@@ -85,7 +88,7 @@ impl RosOptions {
         &self,
         topics: &RobotTopics,
         sensor: LiveSensor,
-        patience: std::time::Duration,
+        patience: Duration,
         stop: fn() -> bool,
     ) -> Result<Option<LiveRobot>, CliError> {
         let connected = match &self.ros {
@@ -159,6 +162,7 @@ impl RosOptions {
 }
 
 /// The domain of ROS 2.
+#[cfg(any(feature = "ros1", feature = "ros2"))]
 fn domain() -> Result<u16, CliError> {
     let Some(text) = env::var_os("ROS_DOMAIN_ID").filter(|text| !text.is_empty()) else {
         return Ok(0);
