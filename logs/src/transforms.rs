@@ -347,7 +347,9 @@ pub struct FrameTree {
 impl FrameTree {
     /// Adds the transforms of a message of `tf2_msgs/TFMessage`.
     pub fn add_message(&mut self, message: &Value<'_>) {
-        transforms(message).into_iter().for_each(|transform| self.add(transform));
+        for transform in transforms(message) {
+            self.add(transform);
+        }
     }
 
     /// The mount of the scanner of a frame on the robot; `None` if no transforms lead from it to the robot.

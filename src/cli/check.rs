@@ -96,6 +96,7 @@ Ctrl-C stops the check and prints the results so far.",
              the connection to another process is lost; no probe of an estimate found a start"),
     ],
 ))]
+#[expect(clippy::struct_excessive_bools, reason = "they are options")]
 #[command(mut_arg("explorer", |explorer| explorer.conflicts_with_all(NOT_FOR_EXPLORERS)))]
 #[command(mut_arg("hosts", |hosts| hosts.conflicts_with_all(NOT_SHARED)))]
 #[command(mut_arg("process", |process| process.conflicts_with_all(NOT_SHARED)))]
@@ -444,17 +445,15 @@ impl CheckArguments {
         if let Some(path) = &self.worst {
             write_worst(path, checked.worst)?;
         }
-        match (folder, &self.failed) {
-            (Some(folder), _) => folder.write(&checked.unmapped),
-            (None, Some(path)) => match checked.first_unmapped.iter().flatten().next() {
-                Some(failure) => self.write_failed(path, failure),
-                None => {
-                    remark!("{} is not written: each start was mapped", path.display());
-                    Ok(())
-                }
-            },
-            (None, None) => Ok(()),
+        let Some(path) = &self.failed else { return Ok(()) };
+        if let Some(folder) = folder {
+            return folder.write(&checked.unmapped);
         }
+        if let Some(failure) = checked.first_unmapped.iter().flatten().next() {
+            return self.write_failed(path, failure);
+        }
+        remark!("{} is not written: each start was mapped", path.display());
+        Ok(())
     }
 
     /// Writes the start of a failure as a world file, or the run as a picture or a page.

@@ -126,7 +126,7 @@ pub(crate) fn marker_message(stamp: Nanoseconds, marker: &MarkerView) -> PoseSta
 }
 
 /// The marker of a message; `None` if a number in it is not finite.
-pub(crate) fn marker_view(message: PoseStamped<Bytes>) -> Option<Stamped<MarkerView>> {
+pub(crate) fn marker_view(message: &PoseStamped<Bytes>) -> Option<Stamped<MarkerView>> {
     let odometry::Odometry { position, heading } = message.pose.to_floor()?;
     let marker = MarkerView { position, axis: undirected(heading), door: None };
     Some(Stamped { stamp: nanoseconds(message.header.stamp), content: marker })

@@ -85,15 +85,21 @@ pub(super) fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Ve
 /// The marker; `None` if it is no such message, or a number in it is not finite.
 pub(super) fn read_marker(bytes: &[u8]) -> Option<Stamped<MarkerView>> {
     let (_, message) = read::<Numbered<PoseStamped<Bytes>>>(bytes)?;
-    marker_view(message)
+    marker_view(&message)
 }
 
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
-    use toposlam_logs::standard::ODOM;
+    use toposlam_logs::{
+        Mount,
+        standard::{BASE, ODOM},
+    };
+    use toposlam_model::driving::odometry;
+    use toposlam_vision::laser::scan::ScanGeometry;
 
-    use super::*;
+    use super::{odometry as odometry_body, *};
+    use crate::live::SECOND;
 
     fn reckoning() -> Reckoning {
         let at = odometry::Odometry { position: [1.5, -0.25], heading: 2.5 };
@@ -102,7 +108,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read() {
-        let read = read_odometry(&odometry(9, &reckoning())).unwrap();
+        let read = read_odometry(&odometry_body(9, &reckoning())).unwrap();
         assert_eq!((read.stamp, read.at.position), (3 * SECOND + 7, [1.5, -0.25]));
         assert!((read.at.heading - 2.5).abs() < 1e-12, "{read:?}");
         let wheels = read_twist(&twist(reckoning().wheels)).unwrap();
@@ -120,7 +126,8 @@ mod tests {
         let sweep =
             Scan::new(geometry, vec![1.0, f32::INFINITY, 2.5], nalgebra::Isometry2::identity());
         let sweep = Stamped { stamp: 7, content: sweep.unwrap() };
-        assert_eq!(read_scan(&scan(1, 7, &sweep.content)), Some(sweep));
+        let Stamped { stamp, content } = read_scan(&scan(1, 7, &sweep.content)).unwrap();
+        assert_eq!((stamp, content.scan(&Mount::centre())), (sweep.stamp, Some(sweep.content)));
         let found = MarkerView { position: [0.5, -0.25], axis: 1.0, door: None };
         let read = read_marker(&marker(1, 9, &found)).unwrap();
         assert_eq!((read.stamp, read.content.position), (9, found.position));
@@ -141,7 +148,7 @@ mod tests {
     #[test]
     fn a_quaternion_of_any_length_is_the_same_heading() {
         let read = |quaternion: [f64; 4]| {
-            let mut body = odometry(1, &reckoning());
+            let mut body = odometry_body(1, &reckoning());
             // Behind the header (12 bytes and a text), the text `base_link`, and the position.
             let at = 12 + (4 + ODOM.len()) + (4 + BASE.len()) + 24;
             for (bytes, number) in body[at..].chunks_exact_mut(8).zip(quaternion) {
@@ -165,7 +172,7 @@ mod tests {
     #[test]
     fn odometry_with_a_number_that_is_not_finite_is_rejected() {
         let at = odometry::Odometry { position: [f64::NAN, 0.0], heading: 0.0 };
-        assert_eq!(read_odometry(&odometry(1, &Reckoning { at, ..reckoning() })), None);
+        assert_eq!(read_odometry(&odometry_body(1, &Reckoning { at, ..reckoning() })), None);
     }
 
     proptest! {
@@ -176,7 +183,7 @@ mod tests {
 
         #[test]
         fn what_is_cut_off_is_none(left in 0..700_usize) {
-            let body = odometry(9, &reckoning());
+            let body = odometry_body(9, &reckoning());
             prop_assert!(left >= body.len() || read_odometry(&body[..left]).is_none());
         }
     }

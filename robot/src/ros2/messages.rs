@@ -130,7 +130,7 @@ pub(super) fn marker(stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
 
 /// The marker; `None` if it is no such message, or a number in it is not finite.
 pub(super) fn read_marker(body: &Body) -> Option<Stamped<MarkerView>> {
-    marker_view(read::<PoseStamped<Bytes>>(body)?)
+    marker_view(&read::<PoseStamped<Bytes>>(body)?)
 }
 
 pub(super) fn clock(stamp: Nanoseconds) -> Vec<u8> {

@@ -57,6 +57,7 @@ pub(super) struct Node {
     runtime: Option<Runtime>,
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "it maps errors")]
 fn no_dds(cause: impl ToString) -> RobotError {
     RobotError::NoDds { cause: cause.to_string() }
 }

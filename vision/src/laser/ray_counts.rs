@@ -253,7 +253,8 @@ fn for_cells(
     let (mut x, mut y) = (in_parts(start.x), in_parts(start.y));
     let (east, north) = (in_parts(step.x), in_parts(step.y));
     let mut before = usize::MAX;
-    for _ in first..last + 1 {
+    let points = last - first + 1;
+    for _ in 0..points {
         let [column, row] = [(x >> 32) as usize, (y >> 32) as usize];
         if column < side && row < side {
             let at = row * side + column;

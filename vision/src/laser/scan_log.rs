@@ -240,7 +240,9 @@ impl ScanLog {
         let (sure, unsure) = self.agreeing_passes(here, &own, &counts, &map_from_log);
         let add =
             |counts: &mut RayCounts, placed: &mut Vec<PlacedScan>, passes: Vec<PlacedScan>| {
-                passes.iter().for_each(|scan| counts.add(&scan.rays));
+                for scan in &passes {
+                    counts.add(&scan.rays);
+                }
                 placed.extend(passes);
             };
         let local = |counts: &RayCounts, placed: &[PlacedScan]| {
