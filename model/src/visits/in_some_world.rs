@@ -10,12 +10,12 @@ use std::collections::BTreeSet;
 use super::{VisitAlternative, VisitSet, VisitWay};
 use crate::{enumerate::Watch, folding::FoldedTrail, percept::Door};
 
-/// Whether some world explains visits.
+/// Whether some choice of visits is explained: by a known world or by any, and by the doors of an algorithm if one drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Explanation {
-    /// Some world explains these alternatives, one of each visit.
+    /// These alternatives are, one of each visit.
     Explained(Vec<Option<VisitAlternative>>),
-    /// No world explains any choice of the visits up to this one, counted from 0.
+    /// No choice of the visits up to this one is, counted from 0.
     Impossible { visit: usize },
     /// The search was stopped, or its bound was reached.
     NotKnown,
@@ -23,14 +23,14 @@ pub enum Explanation {
 
 /// The folded walk of some visits.
 #[derive(Clone, Debug)]
-struct Walk {
+pub(super) struct Walk {
     trail: FoldedTrail,
     next: Next,
 }
 
 /// Where the robot is after a visit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Next {
+pub(super) enum Next {
     /// It has not come to a vertex.
     Begins,
     /// It drives away from the last vertex, which it left by this door.
@@ -55,7 +55,7 @@ pub fn explain(
     bound: usize,
     watch: &dyn Watch,
 ) -> Explanation {
-    let begin = Walk { trail: FoldedTrail::default(), next: Next::Begins };
+    let begin = Walk::begin();
     let Some(first) = visits.first() else { return Explanation::Explained(Vec::new()) };
     let mut branches = vec![Branch { untried: begin.ways(first, visits.len() == 1), walk: begin }];
     let mut choice = Vec::new();
@@ -87,6 +87,10 @@ pub fn explain(
 }
 
 impl Walk {
+    pub(super) fn begin() -> Self {
+        Self { trail: FoldedTrail::default(), next: Next::Begins }
+    }
+
     /// The alternatives of the next visit, each with where the robot is after it, from the last to the first.
     fn ways(&self, visit: &VisitSet, is_last: bool) -> Vec<(Option<VisitAlternative>, Next)> {
         let mut ways = Vec::new();
@@ -106,7 +110,7 @@ impl Walk {
     }
 
     /// The walk after a visit; `None` if no world explains it.
-    fn after(&self, alternative: Option<VisitAlternative>, next: Next) -> Option<Self> {
+    pub(super) fn after(&self, alternative: Option<VisitAlternative>, next: Next) -> Option<Self> {
         let mut trail = self.trail.clone();
         if let Some(VisitAlternative { percept, .. }) = alternative {
             match self.next {
@@ -119,7 +123,7 @@ impl Walk {
         Some(Self { trail, next })
     }
 
-    fn may_hold_marker(&self) -> bool {
+    pub(super) fn may_hold_marker(&self) -> bool {
         self.next == Next::Begins || self.trail.may_hold_marker()
     }
 

@@ -69,16 +69,16 @@ pub fn alternatives_left(
 }
 
 /// A visit in a world.
-struct Step<'g, M> {
-    graph: &'g EmbeddedGraph,
-    marker: &'g M,
-    way: VisitWay,
-    is_last: bool,
+pub(super) struct Step<'g, M> {
+    pub(super) graph: &'g EmbeddedGraph,
+    pub(super) marker: &'g M,
+    pub(super) way: VisitWay,
+    pub(super) is_last: bool,
 }
 
 impl<M: Marker> Step<'_, M> {
     /// The states after a visit with this alternative: none if it does not fit, several if it leaves the door open.
-    fn after(&self, state: State, alternative: Option<VisitAlternative>) -> Vec<State> {
+    pub(super) fn after(&self, state: State, alternative: Option<VisitAlternative>) -> Vec<State> {
         let Self { graph, marker, way, is_last } = *self;
         let at = |pose: Dart| State { pose, ..state };
         let Some(alternative) = alternative else {

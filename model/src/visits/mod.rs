@@ -3,14 +3,17 @@
 //! A [`VisitSet`] is a stay at what may be a vertex, with the percepts that the views cannot exclude; one of them may be
 //! that there is no vertex. A *choice* takes one alternative of each visit. A world explains the visits if it explains
 //! some choice: [`states_after`] follows all choices in a known world at once, [`alternatives_left`] finds what the world
-//! decides, and [`explain`] searches for a choice that some world explains.
+//! decides, and [`explain`] searches for a choice that some world explains. [`explain_by_algorithm`] does so if the doors
+//! are those of an algorithm.
 //!
 //! Between vertices a robot may turn back in the corridor. That is a visit without a vertex by a robot that goes
 //! [back](VisitWay::Back), or a visit that may be one.
 
+mod by_algorithm;
 mod in_some_world;
 mod in_world;
 
+pub use by_algorithm::{AlgorithmSearchBounds, explain_by_algorithm};
 pub use in_some_world::{Explanation, explain};
 pub use in_world::{alternatives_left, states_after};
 

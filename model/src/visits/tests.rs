@@ -8,9 +8,13 @@ use super::*;
 use crate::{
     any_graph::{Class, StopAt, any_graph, by_neighbours, starts},
     embedded_graph::{Dart, EmbeddedGraph},
+    mapping::MappingAlgorithm,
     marker::{Directional, Marker, NoMarker},
     percept::Sighting,
-    trace::anywhere,
+    trace::{
+        MatchEnd, Trace, TraceClaim, TraceEventKind, anywhere, match_algorithm, poses,
+        tests::{explored_by, lollipop},
+    },
     world::{GraphWorld, State, World},
 };
 
@@ -155,7 +159,157 @@ fn what_was_tried_in_vain_is_not_tried_again() {
     assert_eq!(explain(&visits, false, 100_000, &()), Explanation::Impossible { visit: 43 });
 }
 
+/// Every walk of some visits as an algorithm makes it: where it turned back, it was at a dead end.
+fn walks(visits: &[VisitSet]) -> Vec<Vec<VisitAlternative>> {
+    let dead_end = |sighting| VisitAlternative {
+        percept: Percept { degree: 1, sighting },
+        door: Some(Door::BACK),
+    };
+    let vertices = |visit: &VisitSet| {
+        let mut vertices = Vec::new();
+        for &alternative in visit.alternatives() {
+            if alternative.is_none() && visit.way() == VisitWay::Back {
+                let sightings = [Sighting::Nothing, Sighting::Pointing(Door::BACK)];
+                vertices.extend(sightings.map(|sighting| Some(dead_end(sighting))));
+            } else {
+                vertices.push(alternative);
+            }
+        }
+        vertices
+    };
+    visits.iter().fold(vec![Vec::new()], |walks, visit| {
+        let with = |walk: &Vec<VisitAlternative>| {
+            let one = |vertex| walk.iter().copied().chain(vertex).collect();
+            vertices(visit).into_iter().map(one).collect::<Vec<_>>()
+        };
+        walks.iter().flat_map(with).collect()
+    })
+}
+
+/// Whether an algorithm takes the doors of a walk, in a graph or in some world.
+fn takes(
+    algorithm: MappingAlgorithm,
+    walk: &[VisitAlternative],
+    graph: Option<&EmbeddedGraph>,
+) -> bool {
+    let kinds = walk.iter().flat_map(|vertex| {
+        let door = vertex.door.map(TraceEventKind::Door);
+        [TraceEventKind::Percept(vertex.percept)].into_iter().chain(door)
+    });
+    let Ok(trace) = Trace::new(kinds) else { return walk.is_empty() };
+    let reached = match_algorithm(algorithm, &trace, TraceClaim::Part, 200).reached;
+    let is_explained = match graph {
+        Some(graph) => {
+            let starts = anywhere(graph, &Directional);
+            poses(graph, &Directional, &starts, &trace).misfit.is_none()
+        }
+        None => {
+            let visit = |&vertex: &_| VisitSet::new([Some(vertex)], VisitWay::Through);
+            let visits: Vec<_> = walk.iter().map(visit).collect();
+            matches!(explain(&visits, true, 100_000, &()), Explanation::Explained(_))
+        }
+    };
+    is_explained && matches!(reached, MatchEnd::Mapped | MatchEnd::EndOfTrace)
+}
+
+const BOUNDS: AlgorithmSearchBounds = AlgorithmSearchBounds { darts: 200, steps: 100_000 };
+
+#[test]
+fn the_doors_of_a_whole_run_are_among_those_of_open_visits() {
+    let graph = lollipop();
+    for algorithm in [MappingAlgorithm::Folding, MappingAlgorithm::Algorithm1] {
+        let trace = explored_by(algorithm, &graph, Dart(0));
+        let visit = |(at, &percept): (usize, &Percept)| {
+            let door = trace.doors().get(at).copied();
+            let truth = [Some(VisitAlternative { percept, door })];
+            let others = [None, unmarked(3, 1), unmarked(4, 2)];
+            VisitSet::new(truth.into_iter().chain(others), VisitWay::Through)
+        };
+        let visits: Vec<_> = trace.percepts().iter().enumerate().map(visit).collect();
+        let start = [GraphWorld::new(&graph, Dart(0)).state()];
+        let world = Some((&graph, &start[..]));
+        let found = explain_by_algorithm(algorithm, &visits, world, BOUNDS, &());
+        assert!(matches!(found, Explanation::Explained(_)), "{algorithm}");
+        // The map is complete: no move follows.
+        let certain: Vec<_> = trace
+            .percepts()
+            .iter()
+            .zip(trace.doors())
+            .map(|(&percept, &door)| {
+                VisitSet::new(
+                    [Some(VisitAlternative { percept, door: Some(door) })],
+                    VisitWay::Through,
+                )
+            })
+            .collect();
+        let last = trace.percepts()[certain.len()];
+        let more = |door| {
+            let door = VisitAlternative { percept: last, door };
+            let visits = [&certain[..], &[VisitSet::new([Some(door)], VisitWay::Through)]].concat();
+            explain_by_algorithm(algorithm, &visits, world, BOUNDS, &())
+        };
+        assert!(matches!(more(None), Explanation::Explained(_)), "{algorithm}");
+        if algorithm == MappingAlgorithm::Folding {
+            let none = Explanation::Impossible { visit: certain.len() };
+            assert_eq!(more(Some(Door::BACK)), none);
+        }
+        for bounds in [
+            AlgorithmSearchBounds { steps: 3, ..BOUNDS },
+            AlgorithmSearchBounds { darts: 2, ..BOUNDS },
+        ] {
+            let found = explain_by_algorithm(algorithm, &certain, world, bounds, &());
+            assert_eq!(found, Explanation::NotKnown);
+        }
+    }
+    let visits = [VisitSet::new([unmarked(3, 1)], VisitWay::Through)];
+    let movable = MappingAlgorithm::MovableMarker;
+    let found = explain_by_algorithm(movable, &visits, None, BOUNDS, &());
+    assert_eq!(found, Explanation::NotKnown);
+}
+
 proptest! {
+    #[test]
+    fn an_algorithm_takes_the_doors_of_visits_exactly_if_it_takes_those_of_a_choice(
+        graph in any_graph(Class::Multigraph, 4),
+        others in any_visits(true, 1..=3, 4),
+        kept in vec(0..4_u8, 4),
+        folding in any::<bool>(),
+        is_known in any::<bool>(),
+    ) {
+        let algorithm =
+            if folding { MappingAlgorithm::Folding } else { MappingAlgorithm::Algorithm1 };
+        let run = explored_by(algorithm, &graph, Dart(0));
+        // Of most visits, what the run has there is among the alternatives; a dead end may be none.
+        let visit = |(at, other): (usize, &VisitSet)| {
+            let truth = run.percepts().get(at).zip(run.doors().get(at)).filter(|_| kept[at] > 0);
+            let truth = truth.map(|(&percept, &door)| VisitAlternative { percept, door: Some(door) });
+            let is_end = truth.is_some_and(|truth| truth.percept.degree == 1);
+            if is_end && kept[at] == 1 {
+                return VisitSet::turned_back();
+            }
+            let all = other.alternatives().iter().copied().chain(truth.map(Some));
+            VisitSet::new(all, other.way())
+        };
+        let visits: Vec<_> = others.iter().enumerate().map(visit).collect();
+        let starts = anywhere(&graph, &Directional);
+        let world = is_known.then_some((&graph, &starts[..]));
+        let taken = walks(&visits).iter().any(|walk| takes(algorithm, walk, world.map(|it| it.0)));
+        match explain_by_algorithm(algorithm, &visits, world, BOUNDS, &()) {
+            Explanation::Explained(choice) => {
+                prop_assert!(taken, "{:?}", choice);
+                let chosen = |(visit, one): (&VisitSet, &_)| visit.alternatives().contains(one);
+                prop_assert!(visits.iter().zip(&choice).all(chosen));
+                prop_assert_eq!(visits.len(), choice.len());
+            }
+            Explanation::Impossible { visit } => {
+                prop_assert!(!taken);
+                let before = explain_by_algorithm(algorithm, &visits[..visit], world, BOUNDS, &());
+                prop_assert!(matches!(before, Explanation::Explained(_)));
+            }
+            Explanation::NotKnown => prop_assert!(false, "there are few choices"),
+        }
+    }
+
     #[test]
     fn judging_sets_is_judging_each_choice(
         graph in any_graph(Class::Multigraph, 4),
