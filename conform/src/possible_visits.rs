@@ -3,14 +3,20 @@
 //! What scans show may be wrong in one visit of many, so it may support that a log conforms, and accuses nobody. If it fits no
 //! choice in the known world, it is compared once more by what was [driven](DrivenVisits) or is seen to end alone. That accuses
 //! nobody either: a pass may lie beside the place that it is of, where odometry drifts.
+//!
+//! The doors of an algorithm are compared with the choices one by one, and accuse nobody: which percepts led to them is seen.
+//!
+//! Arms belong to places, which is not modelled: the visits of one place are chosen from one by one.
 
 use serde::Serialize;
 use toposlam_model::{
     enumerate::Watch,
+    mapping::MappingMethod,
     marker::{Directional, Marker, NoMarker},
     percept::{Door, Percept, Sighting},
     visits::{
-        Explanation, VisitAlternative, VisitSet, VisitWay, alternatives_left, explain, states_after,
+        AlgorithmSearchBounds, Explanation, VisitAlternative, VisitSet, VisitWay,
+        alternatives_left, explain, explain_by_algorithm, states_after,
     },
     world::State,
 };
@@ -35,6 +41,8 @@ pub struct PossibleVisits {
     pub fit: VisitFit,
     /// Whether the building is a network of corridors at all.
     pub network: NetworkFit,
+    /// Whether the algorithm takes the doors of a choice that fits; `None` if none is followed.
+    pub algorithm: Option<VisitFit>,
     /// The time of the visit up to which the known world fits no choice of what was driven or is seen to end, in nanoseconds.
     #[serde(skip)]
     pub(super) refuted: Option<u64>,
@@ -66,6 +74,8 @@ pub enum VisitFit {
 
 /// The bound of the search for a choice that some world explains: a second, and a few hundred megabytes.
 const MOST_DARTS: usize = 20_000_000;
+/// The bound of the search for a choice whose doors an algorithm takes, in steps of its runs: a few seconds.
+const MOST_STEPS: usize = 200_000;
 /// More doors than this are not expected at a junction of which nothing is known.
 const MOST_DOORS: u32 = 8;
 /// A log conforms only if at least this part of its visits is certain: two thirds.
@@ -114,7 +124,30 @@ impl PossibleVisits {
                 Explanation::NotKnown => VisitFit::NotKnown,
             };
         }
+        judged.algorithm = judged.follow(&sets, config, watch);
         judged
+    }
+
+    /// Whether the algorithm takes the doors of a choice that fits. Runs that recover, or with audits, are not followed.
+    fn follow(
+        &self,
+        sets: &[VisitSet],
+        config: &ConformConfig,
+        watch: &dyn Watch,
+    ) -> Option<VisitFit> {
+        let RunDriver::Method(MappingMethod::By { algorithm, audits: 0 }) = config.driver else {
+            return None;
+        };
+        if self.fit != VisitFit::Fits {
+            return None;
+        }
+        let world = config.world.as_ref().map(|known| (&known.graph, &known.states[..]));
+        let bounds = AlgorithmSearchBounds { darts: config.dart_bound, steps: MOST_STEPS };
+        Some(match explain_by_algorithm(algorithm, sets, world, bounds, watch) {
+            Explanation::Explained(_) => VisitFit::Fits,
+            Explanation::Impossible { .. } => VisitFit::Contradiction,
+            Explanation::NotKnown => VisitFit::NotKnown,
+        })
     }
 
     /// The visits of a building that is no network of corridors show nothing.
@@ -148,7 +181,7 @@ impl PossibleVisits {
 
     /// Whether the visits conform, as sets.
     pub(super) fn conform(&self) -> bool {
-        self.by_anyone
+        (self.by_anyone || self.algorithm == Some(VisitFit::Fits))
             && !self.is_unreliable()
             && self.fit == VisitFit::Fits
             && self.is_certain_enough()

@@ -298,7 +298,7 @@ fn no_network(network: &NetworkFit) -> Option<String> {
 
 /// The visits of a laser log that are not certain, and whether some choice of their percepts fits.
 fn possible(visits: &PossibleVisits, report: &LogReport) -> Option<String> {
-    let PossibleVisits { visits: all, certain, fit, decided_by_world, .. } = visits;
+    let PossibleVisits { visits: all, certain, fit, algorithm, decided_by_world, .. } = visits;
     let (world, no_choice) = if report.facts.world.is_some() {
         ("the world", "the world fits no choice of their percepts")
     } else {
@@ -323,9 +323,21 @@ fn possible(visits: &PossibleVisits, report: &LogReport) -> Option<String> {
         VisitFit::NotKnown => {
             parts.push(format!("whether their percepts fit {world} is not known"));
         }
-        VisitFit::Fits if report.driver != RunDriver::Anyone => parts.push(format!(
-            "a choice of their percepts fits {world}, but the doors of the algorithm are not compared with it"
-        )),
+        VisitFit::Fits if report.driver != RunDriver::Anyone && *algorithm != Some(VisitFit::Fits) => {
+            let doors = match algorithm {
+                Some(VisitFit::Contradiction) => {
+                    "the algorithm does not take the doors of any that does"
+                }
+                Some(_) => "whether the algorithm takes the doors of one that does is not known",
+                None => "the doors of the algorithm are not compared with it",
+            };
+            parts.push(format!("a choice of their percepts fits {world}, but {doors}"));
+        }
+        VisitFit::Fits if *algorithm == Some(VisitFit::Fits) && visits.is_certain_enough() => {
+            parts.push(format!(
+                "a choice of their percepts fits {world}, and the algorithm takes its doors"
+            ));
+        }
         VisitFit::Fits if visits.is_certain_enough() => {
             parts.push(format!("a choice of their percepts fits {world}"));
         }
@@ -339,7 +351,22 @@ fn possible(visits: &PossibleVisits, report: &LogReport) -> Option<String> {
         [one] => parts.push(format!("the world decides visit {one}")),
         several => parts.push(format!("the world decides visits {}", several.join(", "))),
     }
+    // If they agreed at each place, less would fit.
+    let is_chosen = match fit {
+        VisitFit::Fits => certain < all && *all > 1,
+        VisitFit::Contradiction => certain < all || is_driven(report),
+        _ => false,
+    };
+    if is_chosen {
+        parts.push("visits of one place are chosen from one by one".to_owned());
+    }
     (!parts.is_empty()).then(|| parts.join("; "))
+}
+
+/// Whether what was driven or is seen to end does not fit the known world.
+fn is_driven(report: &LogReport) -> bool {
+    let cause = report.facts.contradiction.as_ref().map(|found| &found.cause);
+    matches!(cause, Some(DivergenceCause::Driven))
 }
 
 /// A remark on a log that was recorded in another world.

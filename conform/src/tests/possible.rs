@@ -1,6 +1,11 @@
 //! Visits of a laser log that the scans do not decide: what fits, and that nobody is accused on a guess.
 
-use toposlam_model::{embedded_graph::EmbeddedGraph, marker::NoMarker, trace::anywhere};
+use toposlam_model::{
+    embedded_graph::EmbeddedGraph,
+    mapping::MappingAlgorithm,
+    marker::{Directional, NoMarker},
+    trace::anywhere,
+};
 use toposlam_vision::visits::{
     VisitPercept,
     network_fit::{NetworkFault, NetworkFit},
@@ -145,6 +150,34 @@ fn what_a_robot_drove_may_not_fit_a_known_world_either() {
     let network = NetworkFit { fault: Some(NetworkFault::Wide), ..NetworkFit::default() };
     let possible = found.possible.clone().unwrap().in_building(network);
     assert_eq!(possible.refuted, None);
+}
+
+#[test]
+fn an_algorithm_takes_one_of_the_doors_of_an_open_visit() {
+    let ring = ring();
+    let states = anywhere(&ring, &Directional);
+    let config = |world: Option<KnownWorld>| ConformConfig {
+        world,
+        driver: RunDriver::from(MappingAlgorithm::Folding),
+        ..by_anyone()
+    };
+    let fit = |doors: &[u32], config: &ConformConfig| {
+        // A dead end has no door 5.
+        let seen: Vec<_> =
+            doors.iter().map(|&door| Some((3, door))).chain([Some((1, 5))]).collect();
+        let (kinds, junctions) = events_of(&[(&seen, false)]);
+        PossibleVisits::judge(&bare_events(kinds), &junctions, None, config, &()).algorithm
+    };
+    for world in [None, Some(KnownWorld { graph: ring.clone(), states })] {
+        let config = config(world);
+        let mut fits = [0, 1, 2].map(|door| fit(&[door], &config).unwrap());
+        fits.sort_by_key(|&fit| fit != VisitFit::Fits);
+        // It has one run.
+        assert_eq!(fits, [VisitFit::Fits, VisitFit::Contradiction, VisitFit::Contradiction]);
+        let all = |config: &ConformConfig| fit(&[0, 1, 2], config);
+        assert_eq!(all(&config), Some(VisitFit::Fits));
+        assert_eq!(all(&ConformConfig { driver: RunDriver::Anyone, ..config }), None);
+    }
 }
 
 #[test]
