@@ -263,9 +263,8 @@ fn ways(
                 ways.push((alternative, alternative));
             }
             (Some(vertex), _) => {
-                ways.extend(vertex.doors().map(|door| {
-                    (alternative, Some(VisitAlternative { door: Some(door), ..vertex }))
-                }))
+                let leaves = |door| Some(VisitAlternative { door: Some(door), ..vertex });
+                ways.extend(vertex.doors().map(|door| (alternative, leaves(door))));
             }
         }
     }

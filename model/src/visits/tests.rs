@@ -198,16 +198,13 @@ fn takes(
     });
     let Ok(trace) = Trace::new(kinds) else { return walk.is_empty() };
     let reached = match_algorithm(algorithm, &trace, TraceClaim::Part, 200).reached;
-    let is_explained = match graph {
-        Some(graph) => {
-            let starts = anywhere(graph, &Directional);
-            poses(graph, &Directional, &starts, &trace).misfit.is_none()
-        }
-        None => {
-            let visit = |&vertex: &_| VisitSet::new([Some(vertex)], VisitWay::Through);
-            let visits: Vec<_> = walk.iter().map(visit).collect();
-            matches!(explain(&visits, true, 100_000, &()), Explanation::Explained(_))
-        }
+    let is_explained = if let Some(graph) = graph {
+        let starts = anywhere(graph, &Directional);
+        poses(graph, &Directional, &starts, &trace).misfit.is_none()
+    } else {
+        let visit = |&vertex: &_| VisitSet::new([Some(vertex)], VisitWay::Through);
+        let visits: Vec<_> = walk.iter().map(visit).collect();
+        matches!(explain(&visits, true, 100_000, &()), Explanation::Explained(_))
     };
     is_explained && matches!(reached, MatchEnd::Mapped | MatchEnd::EndOfTrace)
 }
