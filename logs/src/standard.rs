@@ -28,7 +28,7 @@ messages! {
     LaserScanMessage<&[f32]>: "sensor_msgs" "LaserScan";
     Twist: "geometry_msgs" "Twist";
     TwistStamped: "geometry_msgs" "TwistStamped";
-    Clock: "rosgraph_msgs" "Clock";
+    ClockMessage: "rosgraph_msgs" "Clock";
     PoseStamped: "geometry_msgs" "PoseStamped";
     OdometryMessage: "nav_msgs" "Odometry";
     TFMessage<'_>: "tf2_msgs" "TFMessage";
@@ -158,7 +158,7 @@ pub struct TwistStamped<T = &'static str> {
 
 /// The present time, where it is not that of the system.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Clock {
+pub struct ClockMessage {
     pub clock: Stamp,
 }
 

@@ -96,8 +96,8 @@ impl RosOptions {
             Some(master) => toposlam_robot::ros1::connect(master, topics, sensor, patience, stop),
             #[cfg(feature = "ros2")]
             None => {
-                let (place, kind) = (self.ros2_place()?, self.command_type());
-                toposlam_robot::ros2::connect(&place, topics, sensor, kind, patience, stop)
+                let (domain, kind) = (self.ros2_domain()?, self.command_type());
+                toposlam_robot::ros2::connect(&domain, topics, sensor, kind, patience, stop)
             }
             #[allow(unreachable_patterns, reason = "with both features there is no other")]
             _ => return Err(self.missing()),
@@ -119,14 +119,14 @@ impl RosOptions {
         match &self.ros {
             #[cfg(feature = "ros1")]
             Some(master) => {
-                let served = toposlam_robot::ros1::ServedTopics::new(master, topics);
+                let served = toposlam_robot::ros1::MasterTopics::new(master, topics);
                 Ok(Box::new(served.map_err(at)?))
             }
             #[cfg(feature = "ros2")]
             None => {
-                use toposlam_robot::ros2::{ServedTopics, WheelsType};
+                use toposlam_robot::ros2::{DomainTopics, WheelsType};
                 let kind = self.command_type().unwrap_or(WheelsType::Twist);
-                let served = ServedTopics::new(&self.ros2_place()?, topics, kind);
+                let served = DomainTopics::new(&self.ros2_domain()?, topics, kind);
                 Ok(Box::new(served.map_err(at)?))
             }
             #[allow(unreachable_patterns, reason = "with both features there is no other")]
@@ -135,9 +135,9 @@ impl RosOptions {
     }
 
     #[cfg(feature = "ros2")]
-    fn ros2_place(&self) -> Result<toposlam_robot::ros2::Place, CliError> {
+    fn ros2_domain(&self) -> Result<toposlam_robot::ros2::RobotDomain, CliError> {
         let (namespace, network) = (self.namespace.clone(), self.network);
-        Ok(toposlam_robot::ros2::Place { domain: domain()?, namespace, network })
+        Ok(toposlam_robot::ros2::RobotDomain { number: domain()?, namespace, network })
     }
 
     #[cfg(feature = "ros2")]

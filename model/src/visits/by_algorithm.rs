@@ -11,8 +11,8 @@ use std::collections::{BTreeSet, HashSet};
 
 use super::{
     Explanation, VisitAlternative, VisitSet, VisitWay,
-    in_some_world::{Next, Walk},
-    in_world::Step,
+    in_some_world::{Next, VisitWalk},
+    in_world::VisitStep,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -39,7 +39,7 @@ pub struct AlgorithmSearchBounds {
 #[derive(Clone)]
 enum Place<'g> {
     InWorld(&'g EmbeddedGraph, Vec<State>),
-    InSomeWorld(Walk),
+    InSomeWorld(VisitWalk),
 }
 
 /// The first visits with a choice of each.
@@ -102,7 +102,7 @@ pub fn explain_by_algorithm(
         return Explanation::NotKnown;
     }
     let place = world.map_or_else(
-        || Place::InSomeWorld(Walk::begin()),
+        || Place::InSomeWorld(VisitWalk::begin()),
         |(graph, states)| Place::InWorld(graph, states.to_vec()),
     );
     let search = Search { algorithm, marker, bounds, steps: 0, is_cut: false };
@@ -229,7 +229,7 @@ impl Place<'_> {
         match self {
             &Self::InWorld(graph, ref before) => {
                 let (way, is_last) = (VisitWay::Through, vertex.door.is_none());
-                let step = Step { graph, marker: &marker, way, is_last };
+                let step = VisitStep { graph, marker: &marker, way, is_last };
                 let states = before.iter().flat_map(|&state| step.after(state, Some(vertex)));
                 let states: BTreeSet<State> = states.collect();
                 let may_be = !states.is_empty();
@@ -238,7 +238,7 @@ impl Place<'_> {
             Self::InSomeWorld(walk) => {
                 let next = vertex.door.map_or(Next::Stands, Next::Leaves);
                 let walk = walk.after(Some(vertex), next);
-                walk.filter(Walk::may_hold_marker).map(Self::InSomeWorld)
+                walk.filter(VisitWalk::may_hold_marker).map(Self::InSomeWorld)
             }
         }
     }

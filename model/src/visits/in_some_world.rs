@@ -23,7 +23,7 @@ pub enum Explanation {
 
 /// The folded walk of some visits.
 #[derive(Clone, Debug)]
-pub(super) struct Walk {
+pub(super) struct VisitWalk {
     trail: FoldedTrail,
     next: Next,
 }
@@ -43,7 +43,7 @@ pub(super) enum Next {
 
 /// A walk, and the ways to go on that have not been tried, the last one first.
 struct Branch {
-    walk: Walk,
+    walk: VisitWalk,
     untried: Vec<(Option<VisitAlternative>, Next)>,
 }
 
@@ -55,7 +55,7 @@ pub fn explain(
     bound: usize,
     watch: &dyn Watch,
 ) -> Explanation {
-    let begin = Walk::begin();
+    let begin = VisitWalk::begin();
     let Some(first) = visits.first() else { return Explanation::Explained(Vec::new()) };
     let mut branches = vec![Branch { untried: begin.ways(first, visits.len() == 1), walk: begin }];
     let mut choice = Vec::new();
@@ -86,7 +86,7 @@ pub fn explain(
     Explanation::Impossible { visit: farthest }
 }
 
-impl Walk {
+impl VisitWalk {
     pub(super) fn begin() -> Self {
         Self { trail: FoldedTrail::default(), next: Next::Begins }
     }

@@ -24,7 +24,8 @@ pub fn states_after(
     let mut after: Vec<Vec<State>> = Vec::with_capacity(visits.len());
     for (index, visit) in visits.iter().enumerate() {
         let before = after.last().map_or(starts, Vec::as_slice);
-        let step = &Step { graph, marker, way: visit.way(), is_last: index + 1 == visits.len() };
+        let step =
+            &VisitStep { graph, marker, way: visit.way(), is_last: index + 1 == visits.len() };
         let all = before.iter().flat_map(|&state| {
             visit.alternatives().iter().flat_map(move |&alternative| step.after(state, alternative))
         });
@@ -55,7 +56,8 @@ pub fn alternatives_left(
     let mut fitting: BTreeSet<State> = after.last().into_iter().flatten().copied().collect();
     for (index, visit) in visits.iter().enumerate().rev() {
         let before = index.checked_sub(1).map_or(starts, |before| after[before].as_slice());
-        let step = &Step { graph, marker, way: visit.way(), is_last: index + 1 == visits.len() };
+        let step =
+            &VisitStep { graph, marker, way: visit.way(), is_last: index + 1 == visits.len() };
         let fits = |&state: &State, alternative| {
             step.after(state, alternative).iter().any(|state| fitting.contains(state))
         };
@@ -69,14 +71,14 @@ pub fn alternatives_left(
 }
 
 /// A visit in a world.
-pub(super) struct Step<'g, M> {
+pub(super) struct VisitStep<'g, M> {
     pub(super) graph: &'g EmbeddedGraph,
     pub(super) marker: &'g M,
     pub(super) way: VisitWay,
     pub(super) is_last: bool,
 }
 
-impl<M: Marker> Step<'_, M> {
+impl<M: Marker> VisitStep<'_, M> {
     /// The states after a visit with this alternative: none if it does not fit, several if it leaves the door open.
     pub(super) fn after(&self, state: State, alternative: Option<VisitAlternative>) -> Vec<State> {
         let Self { graph, marker, way, is_last } = *self;

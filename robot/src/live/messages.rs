@@ -1,6 +1,6 @@
 //! What is read of the messages of a live robot. Their encodings are those of ROS 1 and ROS 2.
 //!
-//! Bytes from outside are not trusted: a body that is too short or too long is rejected, and no memory is allocated for a
+//! RawBytes from outside are not trusted: a body that is too short or too long is rejected, and no memory is allocated for a
 //! length that the body does not have.
 
 use std::fmt;
@@ -53,29 +53,29 @@ pub(crate) struct ScanReading {
     ranges: Vec<f32>,
 }
 
-/// Bytes or a text, after their length; a text need not be UTF-8.
+/// RawBytes or a text, after their length; a text need not be UTF-8.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Bytes(pub(crate) Vec<u8>);
+pub(crate) struct RawBytes(pub(crate) Vec<u8>);
 
-impl Bytes {
+impl RawBytes {
     /// The text, without the zero byte that may end it.
     pub(crate) fn text(&self) -> String {
         String::from_utf8_lossy(self.0.strip_suffix(&[0]).unwrap_or(&self.0)).into_owned()
     }
 }
 
-impl<'d> Deserialize<'d> for Bytes {
+impl<'d> Deserialize<'d> for RawBytes {
     fn deserialize<D: Deserializer<'d>>(from: D) -> Result<Self, D::Error> {
         struct Whole;
         impl Visitor<'_> for Whole {
-            type Value = Bytes;
+            type Value = RawBytes;
 
             fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
                 out.write_str("bytes")
             }
 
-            fn visit_byte_buf<E>(self, bytes: Vec<u8>) -> Result<Bytes, E> {
-                Ok(Bytes(bytes))
+            fn visit_byte_buf<E>(self, bytes: Vec<u8>) -> Result<RawBytes, E> {
+                Ok(RawBytes(bytes))
             }
         }
         from.deserialize_byte_buf(Whole)
@@ -83,7 +83,7 @@ impl<'d> Deserialize<'d> for Bytes {
 }
 
 /// The odometry of a message; `None` if a number in it is not finite.
-pub(crate) fn reckoning(message: OdometryMessage<Bytes>) -> Option<Reckoning> {
+pub(crate) fn reckoning(message: OdometryMessage<RawBytes>) -> Option<Reckoning> {
     let OdometryMessage { header, pose, twist, .. } = message;
     let (at, wheels) = (pose.pose.to_floor()?, wheel_speeds(twist.twist));
     Some(Reckoning { stamp: nanoseconds(header.stamp), at, wheels })
@@ -95,11 +95,11 @@ pub(crate) fn odometry_message(Reckoning { stamp, at, wheels }: &Reckoning) -> O
 }
 
 /// The file of an image.
-pub(crate) fn image_file(message: CompressedImage<Bytes, Bytes>) -> Stamped<Vec<u8>> {
+pub(crate) fn image_file(message: CompressedImage<RawBytes, RawBytes>) -> Stamped<Vec<u8>> {
     Stamped { stamp: nanoseconds(message.header.stamp), content: message.data.0 }
 }
 
-pub(crate) fn scan_reading(message: LaserScanMessage<Vec<f32>, Bytes>) -> Stamped<ScanReading> {
+pub(crate) fn scan_reading(message: LaserScanMessage<Vec<f32>, RawBytes>) -> Stamped<ScanReading> {
     let geometry = ScanGeometry {
         angle_min: message.angle_min.into(),
         angle_increment: message.angle_increment.into(),
@@ -126,7 +126,7 @@ pub(crate) fn marker_message(stamp: Nanoseconds, marker: &MarkerView) -> PoseSta
 }
 
 /// The marker of a message; `None` if a number in it is not finite.
-pub(crate) fn marker_view(message: &PoseStamped<Bytes>) -> Option<Stamped<MarkerView>> {
+pub(crate) fn marker_view(message: &PoseStamped<RawBytes>) -> Option<Stamped<MarkerView>> {
     let odometry::Odometry { position, heading } = message.pose.to_floor()?;
     let marker = MarkerView { position, axis: undirected(heading), door: None };
     Some(Stamped { stamp: nanoseconds(message.header.stamp), content: marker })

@@ -8,7 +8,7 @@ use toposlam_vision::laser::scan::Scan;
 
 use crate::{
     live::messages::{
-        Bytes, Nanoseconds, Reckoning, ScanReading, Stamped, image_file, marker_message,
+        Nanoseconds, RawBytes, Reckoning, ScanReading, Stamped, image_file, marker_message,
         marker_view, odometry_message, reckoning, scan_reading, time, twist_of, wheel_speeds,
     },
     superscout::WheelSpeeds,
@@ -46,7 +46,7 @@ pub(super) fn odometry(number: u32, reckoning: &Reckoning) -> Vec<u8> {
 
 /// The odometry; `None` if it is no such message, or a number in it is not finite.
 pub(super) fn read_odometry(bytes: &[u8]) -> Option<Reckoning> {
-    let (_, message) = read::<Numbered<OdometryMessage<Bytes>>>(bytes)?;
+    let (_, message) = read::<Numbered<OdometryMessage<RawBytes>>>(bytes)?;
     reckoning(message)
 }
 
@@ -62,7 +62,7 @@ pub(super) fn image(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
 
 /// An image; `None` if it is no such message.
 pub(super) fn read_image(bytes: &[u8]) -> Option<Stamped<Vec<u8>>> {
-    let (_, message) = read::<Numbered<CompressedImage<Bytes, Bytes>>>(bytes)?;
+    let (_, message) = read::<Numbered<CompressedImage<RawBytes, RawBytes>>>(bytes)?;
     Some(image_file(message))
 }
 
@@ -73,7 +73,7 @@ pub(super) fn scan(number: u32, stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
 
 /// The readings of a scan; `None` if it is no such message.
 pub(super) fn read_scan(bytes: &[u8]) -> Option<Stamped<ScanReading>> {
-    let (_, message) = read::<Numbered<LaserScanMessage<Vec<f32>, Bytes>>>(bytes)?;
+    let (_, message) = read::<Numbered<LaserScanMessage<Vec<f32>, RawBytes>>>(bytes)?;
     Some(scan_reading(message))
 }
 
@@ -84,7 +84,7 @@ pub(super) fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Ve
 
 /// The marker; `None` if it is no such message, or a number in it is not finite.
 pub(super) fn read_marker(bytes: &[u8]) -> Option<Stamped<MarkerView>> {
-    let (_, message) = read::<Numbered<PoseStamped<Bytes>>>(bytes)?;
+    let (_, message) = read::<Numbered<PoseStamped<RawBytes>>>(bytes)?;
     marker_view(&message)
 }
 

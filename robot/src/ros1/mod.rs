@@ -65,7 +65,7 @@ impl Wheels for Publisher {
 }
 
 /// The topics of a simulated robot at a master.
-pub struct ServedTopics {
+pub struct MasterTopics {
     commands: Subscription<WheelSpeeds>,
     odometry: Publisher,
     frames: Publisher,
@@ -76,7 +76,7 @@ pub struct ServedTopics {
     _node: Node,
 }
 
-impl ServedTopics {
+impl MasterTopics {
     /// # Errors
     /// Returns an error if there is no master.
     pub fn new(master: &str, topics: &RobotTopics) -> Result<Self, RobotError> {
@@ -93,7 +93,7 @@ impl ServedTopics {
     }
 }
 
-impl ServedRobot for ServedTopics {
+impl ServedRobot for MasterTopics {
     fn command(&self) -> Option<WheelSpeeds> {
         self.commands.take()
     }

@@ -9,8 +9,8 @@ use toposlam_logs::{
     definition::{Definition, Dialect},
     message::{Message, schema},
     standard::{
-        BASE, Clock, CompressedImage, Header, LaserScanMessage, OdometryMessage, PoseStamped,
-        TFMessage, Twist, TwistStamped,
+        BASE, ClockMessage, CompressedImage, Header, LaserScanMessage, OdometryMessage,
+        PoseStamped, TFMessage, Twist, TwistStamped,
     },
 };
 use toposlam_model::driving::scene::MarkerView;
@@ -18,7 +18,7 @@ use toposlam_vision::laser::scan::Scan;
 
 use crate::{
     live::messages::{
-        Bytes, Nanoseconds, Reckoning, ScanReading, Stamped, image_file, marker_message,
+        Nanoseconds, RawBytes, Reckoning, ScanReading, Stamped, image_file, marker_message,
         marker_view, odometry_message, reckoning, scan_reading, time, twist_of, wheel_speeds,
     },
     superscout::WheelSpeeds,
@@ -26,7 +26,7 @@ use crate::{
 
 /// A message as it is sent, without the four bytes before it that name its encoding.
 #[derive(Clone, Debug)]
-pub(super) struct Body {
+pub(super) struct EncodedBody {
     pub(super) encoding: RepresentationIdentifier,
     pub(super) bytes: Vec<u8>,
 }
@@ -36,7 +36,7 @@ const PADDING: usize = 4;
 
 /// The message of a body; `None` if it is too short or too long. A message of another type is either, or its numbers make no
 /// sense. No memory is allocated for a length that the body does not have.
-fn read<T: DeserializeOwned>(body: &Body) -> Option<T> {
+fn read<T: DeserializeOwned>(body: &EncodedBody) -> Option<T> {
     let bytes = body.bytes.as_slice();
     let (message, read) = if body.encoding == RepresentationIdentifier::CDR_BE {
         cdr_encoding::from_bytes::<T, BigEndian>(bytes)
@@ -82,10 +82,10 @@ impl WheelsType {
     }
 
     /// The command to the wheels; `None` if it is no such message.
-    pub(super) fn read(self, body: &Body) -> Option<WheelSpeeds> {
+    pub(super) fn read(self, body: &EncodedBody) -> Option<WheelSpeeds> {
         let twist = match self {
             Self::Twist => read(body)?,
-            Self::TwistStamped => read::<TwistStamped<Bytes>>(body)?.twist,
+            Self::TwistStamped => read::<TwistStamped<RawBytes>>(body)?.twist,
         };
         Some(wheel_speeds(twist))
     }
@@ -96,8 +96,8 @@ pub(super) fn odometry(reckoning: &Reckoning) -> Vec<u8> {
 }
 
 /// The odometry; `None` if it is no such message, or a number in it is not finite.
-pub(super) fn read_odometry(body: &Body) -> Option<Reckoning> {
-    reckoning(read::<OdometryMessage<Bytes>>(body)?)
+pub(super) fn read_odometry(body: &EncodedBody) -> Option<Reckoning> {
+    reckoning(read::<OdometryMessage<RawBytes>>(body)?)
 }
 
 /// The transform from the frame of odometry to the robot.
@@ -110,8 +110,8 @@ pub(super) fn image(stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
 }
 
 /// An image; `None` if it is no such message.
-pub(super) fn read_image(body: &Body) -> Option<Stamped<Vec<u8>>> {
-    read::<CompressedImage<Bytes, Bytes>>(body).map(image_file)
+pub(super) fn read_image(body: &EncodedBody) -> Option<Stamped<Vec<u8>>> {
+    read::<CompressedImage<RawBytes, RawBytes>>(body).map(image_file)
 }
 
 pub(super) fn scan(stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
@@ -119,8 +119,8 @@ pub(super) fn scan(stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
 }
 
 /// The readings of a scan; `None` if it is no such message.
-pub(super) fn read_scan(body: &Body) -> Option<Stamped<ScanReading>> {
-    read::<LaserScanMessage<Vec<f32>, Bytes>>(body).map(scan_reading)
+pub(super) fn read_scan(body: &EncodedBody) -> Option<Stamped<ScanReading>> {
+    read::<LaserScanMessage<Vec<f32>, RawBytes>>(body).map(scan_reading)
 }
 
 /// The marker's pose in the robot's frame.
@@ -129,12 +129,12 @@ pub(super) fn marker(stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
 }
 
 /// The marker; `None` if it is no such message, or a number in it is not finite.
-pub(super) fn read_marker(body: &Body) -> Option<Stamped<MarkerView>> {
-    marker_view(&read::<PoseStamped<Bytes>>(body)?)
+pub(super) fn read_marker(body: &EncodedBody) -> Option<Stamped<MarkerView>> {
+    marker_view(&read::<PoseStamped<RawBytes>>(body)?)
 }
 
 pub(super) fn clock(stamp: Nanoseconds) -> Vec<u8> {
-    write(&Clock { clock: time(stamp) })
+    write(&ClockMessage { clock: time(stamp) })
 }
 
 /// Reads transforms.
@@ -150,7 +150,7 @@ impl FrameReader {
     }
 
     /// Adds the transforms of a message; `None` if it is no such message.
-    pub(super) fn add(&self, body: &Body, frames: &mut FrameTree) -> Option<()> {
+    pub(super) fn add(&self, body: &EncodedBody, frames: &mut FrameTree) -> Option<()> {
         let is_big = body.encoding == RepresentationIdentifier::CDR_BE;
         let encoded = [&[0, u8::from(!is_big), 0, 0], body.bytes.as_slice()].concat();
         let message = decode(self.definition.as_ref()?, &encoded).ok()?;
@@ -168,8 +168,8 @@ mod tests {
     use super::*;
     use crate::live::SECOND;
 
-    fn body(bytes: Vec<u8>) -> Body {
-        Body { encoding: RepresentationIdentifier::CDR_LE, bytes }
+    fn body(bytes: Vec<u8>) -> EncodedBody {
+        EncodedBody { encoding: RepresentationIdentifier::CDR_LE, bytes }
     }
 
     fn reckoning() -> Reckoning {
@@ -243,7 +243,7 @@ mod tests {
         fn no_bytes_are_too_strange(bytes in proptest::collection::vec(any::<u8>(), 0..1000), big: bool) {
             let encoding =
                 if big { RepresentationIdentifier::CDR_BE } else { RepresentationIdentifier::CDR_LE };
-            let body = Body { encoding, bytes };
+            let body = EncodedBody { encoding, bytes };
             let _ = (read_odometry(&body), read_image(&body), read_scan(&body), read_marker(&body));
             let _ = WheelsType::ALL.map(|kind| kind.read(&body));
             let _ = FrameReader::new().add(&body, &mut FrameTree::default());

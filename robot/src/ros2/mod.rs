@@ -1,6 +1,6 @@
 //! A SuperScout behind the topics of ROS 2, over DDS. Section 2.5. The robot and its driver find each other in a domain.
 //!
-//! Unless [`Place::network`] is set, only robots on this machine are found.
+//! Unless [`RobotDomain::network`] is set, only robots on this machine are found.
 
 mod messages;
 mod node;
@@ -16,7 +16,7 @@ use toposlam_logs::{
     message::Message,
     recorder,
     standard::{
-        Clock, CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped,
+        ClockMessage, CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped,
         TFMessage,
     },
 };
@@ -25,7 +25,7 @@ use toposlam_vision::laser::scan::Scan;
 
 use self::{
     messages::FrameReader,
-    node::{Node, OtherSide, Writer},
+    node::{DdsNode, OtherSide, Writer},
 };
 use crate::{
     live::{
@@ -39,7 +39,7 @@ use crate::{
 };
 
 pub use messages::WheelsType;
-pub use node::Place;
+pub use node::RobotDomain;
 
 /// Static transforms are sent to late nodes within this time.
 const TRANSFORMS: Duration = Duration::from_secs(6);
@@ -55,14 +55,14 @@ const CLOCK: &str = "/clock";
 /// # Errors
 /// Returns an error if there is no robot, if a topic has another type, or if the scanner's place is not known.
 pub fn connect(
-    place: &Place,
+    domain: &RobotDomain,
     topics: &RobotTopics,
     sensor: LiveSensor,
     wheels_type: Option<WheelsType>,
     patience: Duration,
     stop: fn() -> bool,
 ) -> Result<LiveRobot, RobotError> {
-    let node = Node::new(place)?;
+    let node = DdsNode::new(domain)?;
     let published = |topic: &str, kind| {
         node.type_of(topic, OtherSide::Publishes, &[kind], FIRST, stop).map(drop)
     };
@@ -96,7 +96,11 @@ pub fn connect(
 }
 
 /// The type of the commands that the robot reads.
-fn wheels_type_of(node: &Node, topic: &str, stop: fn() -> bool) -> Result<WheelsType, RobotError> {
+fn wheels_type_of(
+    node: &DdsNode,
+    topic: &str,
+    stop: fn() -> bool,
+) -> Result<WheelsType, RobotError> {
     let known = WheelsType::ALL.map(WheelsType::type_name);
     let found = node.type_of(topic, OtherSide::Reads, &known, FIRST, stop);
     let found = found.map_err(|error| match error {
@@ -112,7 +116,7 @@ fn wheels_type_of(node: &Node, topic: &str, stop: fn() -> bool) -> Result<Wheels
 
 /// Where the scanner of a topic is on the robot, by its transforms.
 fn scanner_mount(
-    node: &Node,
+    node: &DdsNode,
     scans: &Subscription<Stamped<ScanReading>>,
     stop: fn() -> bool,
 ) -> Result<Mount, RobotError> {
@@ -163,7 +167,7 @@ impl Wheels for WheelsTopic {
 }
 
 /// The topics of a simulated robot. `/clock` has its time.
-pub struct ServedTopics {
+pub struct DomainTopics {
     commands: Subscription<WheelSpeeds>,
     odometry: Writer,
     frames: Writer,
@@ -172,19 +176,19 @@ pub struct ServedTopics {
     markers: Writer,
     clock: Writer,
     // The last field: it is dropped after its writers.
-    _node: Node,
+    _node: DdsNode,
 }
 
-impl ServedTopics {
+impl DomainTopics {
     /// # Errors
     /// Returns an error if DDS cannot be used.
     pub fn new(
-        place: &Place,
+        domain: &RobotDomain,
         topics: &RobotTopics,
         wheels_type: WheelsType,
     ) -> Result<Self, RobotError> {
-        let node = Node::new(place)?;
-        let read = move |body: &messages::Body| wheels_type.read(body);
+        let node = DdsNode::new(domain)?;
+        let read = move |body: &messages::EncodedBody| wheels_type.read(body);
         Ok(Self {
             commands: node.subscribe(&topics.wheels, wheels_type.type_name(), read)?,
             odometry: node.advertise(&topics.odometry, <OdometryMessage as Message>::TYPE)?,
@@ -193,13 +197,13 @@ impl ServedTopics {
                 .advertise(&topics.images, <CompressedImage<FileBytes> as Message>::TYPE)?,
             scans: node.advertise(&topics.scans, <LaserScanMessage<&[f32]> as Message>::TYPE)?,
             markers: node.advertise(&topics.marker, <PoseStamped as Message>::TYPE)?,
-            clock: node.advertise(CLOCK, <Clock as Message>::TYPE)?,
+            clock: node.advertise(CLOCK, <ClockMessage as Message>::TYPE)?,
             _node: node,
         })
     }
 }
 
-impl ServedRobot for ServedTopics {
+impl ServedRobot for DomainTopics {
     fn command(&self) -> Option<WheelSpeeds> {
         self.commands.take()
     }

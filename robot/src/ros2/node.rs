@@ -25,7 +25,7 @@ use rustdds::{
 };
 use tokio::runtime::{Builder, Runtime};
 
-use super::messages::Body;
+use super::messages::EncodedBody;
 use crate::{
     live::topic::{self, Subscription},
     robot::RobotError,
@@ -40,16 +40,16 @@ const LOOK: Duration = Duration::from_millis(20);
 
 /// Where the topics of a robot are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place {
-    pub domain: u16,
+pub struct RobotDomain {
+    pub number: u16,
     /// The namespace of the robot's topics, as in `/robot1`; empty for none.
     pub namespace: String,
     /// Whether robots on the network are reached, and not only those on this machine.
     pub network: bool,
 }
 
-pub(super) struct Node {
-    place: Place,
+pub(super) struct DdsNode {
+    domain: RobotDomain,
     publisher: Publisher,
     subscriber: Subscriber,
     participant: DomainParticipant,
@@ -76,10 +76,10 @@ fn reliable(stays: bool) -> QosPolicies {
     builder.durability(durability).history(History::KeepLast { depth: DEPTH }).build()
 }
 
-impl Node {
-    pub(super) fn new(place: &Place) -> Result<Self, RobotError> {
-        let builder = DomainParticipantBuilder::new(place.domain);
-        let builder = if place.network {
+impl DdsNode {
+    pub(super) fn new(domain: &RobotDomain) -> Result<Self, RobotError> {
+        let builder = DomainParticipantBuilder::new(domain.number);
+        let builder = if domain.network {
             builder
         } else {
             builder.with_only_networks([IpAddr::V4(Ipv4Addr::LOCALHOST)])
@@ -89,7 +89,7 @@ impl Node {
         let subscriber = participant.create_subscriber(&best_effort()).map_err(no_dds)?;
         let runtime = Builder::new_multi_thread().worker_threads(1).build().map_err(no_dds)?;
         Ok(Self {
-            place: place.clone(),
+            domain: domain.clone(),
             publisher,
             subscriber,
             participant,
@@ -97,9 +97,9 @@ impl Node {
         })
     }
 
-    /// The name of a topic in DDS; those of the whole system have no namespace.
+    /// The name of a topic of the robot in DDS.
     fn dds_name(&self, topic: &str) -> String {
-        let namespace = self.place.namespace.trim_matches('/');
+        let namespace = self.domain.namespace.trim_matches('/');
         let topic = topic.trim_start_matches('/');
         if namespace.is_empty() { format!("rt/{topic}") } else { format!("rt/{namespace}/{topic}") }
     }
@@ -123,11 +123,11 @@ impl Node {
         topic: &str,
         type_name: &str,
         stays: bool,
-        mut heard: impl FnMut(Option<Body>) + Send + 'static,
+        mut heard: impl FnMut(Option<EncodedBody>) + Send + 'static,
     ) -> Result<(), RobotError> {
         let qos = if stays { reliable(true) } else { best_effort() };
         let of = self.topic(topic, type_name, &qos)?;
-        let reader: DataReader<Body, AsItIs> =
+        let reader: DataReader<EncodedBody, AsItIs> =
             self.subscriber.create_datareader_no_key(&of, Some(qos)).map_err(no_dds)?;
         if let Some(runtime) = &self.runtime {
             runtime.spawn(async move {
@@ -145,7 +145,7 @@ impl Node {
         &self,
         topic: &str,
         type_name: &str,
-        read: impl Fn(&Body) -> Option<T> + Send + 'static,
+        read: impl Fn(&EncodedBody) -> Option<T> + Send + 'static,
     ) -> Result<Subscription<T>, RobotError> {
         let (inbox, subscription) = topic::subscription(topic);
         self.listen(topic, type_name, false, move |message| {
@@ -182,7 +182,7 @@ impl Node {
             match types[..] {
                 [] if Instant::now() > until => {
                     let (does, seconds) = (side.verb(), patience.as_secs_f64());
-                    let (topic, domain) = (topic.to_owned(), self.place.domain);
+                    let (topic, domain) = (topic.to_owned(), self.domain.number);
                     return Err(RobotError::Nobody { does, topic, domain, seconds });
                 }
                 [] => {}
@@ -261,7 +261,7 @@ fn ros_type(dds: &str) -> String {
     dds.replace("dds_::", "").trim_end_matches('_').replace("::", "/")
 }
 
-impl Drop for Node {
+impl Drop for DdsNode {
     fn drop(&mut self) {
         sleep(LEAVE);
         if let Some(runtime) = self.runtime.take() {
@@ -287,20 +287,20 @@ impl Writer {
 /// Messages are read and written as they are; [`messages`](super::messages) knows their encoding.
 struct AsItIs;
 
-impl DeserializerAdapter<Body> for AsItIs {
+impl DeserializerAdapter<EncodedBody> for AsItIs {
     type Error = Infallible;
-    type Decoded = Body;
+    type Decoded = EncodedBody;
 
     fn supported_encodings() -> &'static [RepresentationIdentifier] {
         &[RepresentationIdentifier::CDR_LE, RepresentationIdentifier::CDR_BE]
     }
 
-    fn transform_decoded(body: Body) -> Body {
+    fn transform_decoded(body: EncodedBody) -> EncodedBody {
         body
     }
 }
 
-impl DefaultDecoder<Body> for AsItIs {
+impl DefaultDecoder<EncodedBody> for AsItIs {
     type Decoder = Copied;
 
     const DECODER: Copied = Copied;
@@ -309,15 +309,15 @@ impl DefaultDecoder<Body> for AsItIs {
 #[derive(Clone)]
 struct Copied;
 
-impl Decode<'_, Body> for Copied {
+impl Decode<'_, EncodedBody> for Copied {
     type Error = Infallible;
 
     fn decode_bytes(
         self,
         bytes: &[u8],
         encoding: RepresentationIdentifier,
-    ) -> Result<Body, Infallible> {
-        Ok(Body { encoding, bytes: bytes.to_owned() })
+    ) -> Result<EncodedBody, Infallible> {
+        Ok(EncodedBody { encoding, bytes: bytes.to_owned() })
     }
 }
 
