@@ -160,10 +160,11 @@ impl Stage {
     }
 
     /// Starts `toposlam drive`.
-    fn drive(&self) -> Process {
+    fn drive(&self, patience: &str) -> Process {
         let [camera, colours] = [self.path("camera.toml"), self.path("colours.toml")];
         let [log, map] = [self.path("run.mcap"), self.path("map.toml")];
         let drive = ["drive", "--ros", &self.address, "--sensor", self.sensor];
+        let drive = [&drive[..], &["--patience", patience]].concat();
         let seen: &[&str] = match self.sensor {
             "camera" => &["--calibration", &camera, "--colours", &colours],
             _ => &[],
@@ -234,7 +235,8 @@ fn the_whole_of_shape_6_is_mapped_through_ros() {
 
 fn maps_shape_6(stage: Stage) {
     let begun = Instant::now();
-    let status = stage.drive().ends_within(600).status;
+    // Other tests run beside this one: images may take their time.
+    let status = stage.drive("20").ends_within(600).status;
     eprintln!("mapped in {:.0} s", begun.elapsed().as_secs_f64());
     let output = fs::read_to_string(stage.folder.join("output")).unwrap();
     assert_eq!(status.code(), Some(0), "{output}");
@@ -254,7 +256,7 @@ fn maps_shape_6(stage: Stage) {
 #[test]
 fn after_ctrl_c_the_robot_stands() {
     let Some(stage) = Stage::new("stopped") else { return };
-    let drive = stage.drive();
+    let drive = stage.drive("2");
     until("the robot moves", || stage.moves());
     drive.signal("-INT");
     // A second interrupt changes nothing.
@@ -267,7 +269,7 @@ fn after_ctrl_c_the_robot_stands() {
 #[test]
 fn a_silent_robot_is_commanded_to_stop() {
     let Some(stage) = Stage::new("silent") else { return };
-    let drive = stage.drive();
+    let drive = stage.drive("2");
     until("the robot moves", || stage.moves());
     // Its process is suspended; no connection is closed.
     stage.robot.signal("-STOP");

@@ -125,7 +125,8 @@ fn the_whole_of_shape_6_is_mapped_by_laser_over_dds() {
     let listener = stage.peer("listen", &stage.path("received"));
     let robot = stage.simulate(&[]);
     let begun = Instant::now();
-    let output = stage.drive(&[]).ends_within(600);
+    // Other tests run beside this one.
+    let output = stage.drive(&["--patience", "20"]).ends_within(600);
     eprintln!("mapped in {:.0} s", begun.elapsed().as_secs_f64());
     assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
     let compared =
@@ -158,7 +159,7 @@ fn a_robot_in_a_namespace_that_reads_stamped_commands_moves_and_stands_after_ctr
     let stage = Stage::new("stamped");
     let space = ["--namespace", "robot1"];
     let robot = stage.simulate(&[&space[..], &["--cmd-vel-type", "TwistStamped"]].concat());
-    let drive = stage.drive(&space);
+    let drive = stage.drive(&[&space[..], &["--patience", "20"]].concat());
     until("the run begins", 60, || stage.folder.join("run.mcap").exists());
     // Time for a few moves.
     sleep(Duration::from_secs(5));
