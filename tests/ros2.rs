@@ -198,7 +198,7 @@ fn what_is_missing_or_of_another_type_is_said() {
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         stderr(&output)
     };
-    let nobody = format!("nobody publishes /odom in domain {}, 10 s long", stage.domain);
+    let nobody = format!("nobody publishes /odom in domain {}; waited for 10 s", stage.domain);
     let said = refused(&stage, &[]);
     assert!(said.contains(&nobody), "{said}");
     for (verb, what, expected) in [

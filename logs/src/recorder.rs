@@ -10,7 +10,9 @@ use super::{
     encode,
     message::Message,
     messages::{self, ProjectMessage, Stamp},
-    standard::{CompressedImage, LaserScanMessage, OdometryMessage, TFMessage, Twist},
+    standard::{
+        CompressedImage, LaserScanMessage, OdometryMessage, TFMessage, TransformStamped, Twist,
+    },
     writer::{LogWriteError, LogWriter},
 };
 use crate::record::{Event, EventKind, Frame, RunObserver, nanoseconds};
@@ -25,6 +27,7 @@ pub const MARKER: &str = "/marker";
 pub const CMD_VEL: &str = "/cmd_vel";
 pub const ODOM: &str = "/odom";
 pub const TF: &str = "/tf";
+pub const TF_STATIC: &str = "/tf_static";
 /// The name of the note with the content of the message [`Run`](messages::Run).
 pub const NOTE: &str = "toposlam";
 
@@ -42,6 +45,8 @@ pub struct Recorder<W: Write> {
     /// The time of the last event, in nanoseconds.
     now: u64,
     twist: Twist,
+    /// Whether the frame of a scanner that is not in the robot's centre is in the log.
+    has_scanner_frame: bool,
 }
 
 impl<W: Write> Recorder<W> {
@@ -54,7 +59,8 @@ impl<W: Write> Recorder<W> {
         out.note(NOTE, &entries(run))?;
         out.write(messages::Run::TOPIC, 0, run)?;
         out.flush()?;
-        Ok(Self { out, error: None, camera, now: 0, twist: Twist::default() })
+        let (now, twist) = (0, Twist::default());
+        Ok(Self { out, error: None, camera, now, twist, has_scanner_frame: false })
     }
 
     /// Closes the log, and returns what it was written to.
@@ -87,6 +93,11 @@ impl<W: Write> Recorder<W> {
             }
         }
         if let Some(scan) = &frame.scan {
+            if let Some(mount) = TransformStamped::of_scanner(taken, scan)
+                && !std::mem::replace(&mut self.has_scanner_frame, true)
+            {
+                self.write(TF_STATIC, &TFMessage { transforms: &[mount] });
+            }
             self.write(SCAN, &LaserScanMessage::new(taken, scan));
         }
         if let Some(scene) = &frame.scene {

@@ -3,6 +3,7 @@
 //!
 //! x ahead, y to the left, metres, radians counter-clockwise (REP 103); `base_link` moves in `odom` (REP 105).
 
+use nalgebra::Isometry2;
 use serde::{Deserialize, Serialize, Serializer};
 use toposlam_model::driving::odometry;
 use toposlam_vision::laser::scan::{Scan, ScanGeometry};
@@ -12,6 +13,8 @@ use super::{message::Message, stamp::Stamp};
 pub const ODOM: &str = "odom";
 pub const BASE: &str = "base_link";
 pub const CAMERA: &str = "camera";
+/// The frame of a scanner that is not in the robot's centre.
+const SCANNER: &str = "laser";
 
 macro_rules! messages {
     ($($type:ty: $package:literal $name:literal;)*) => {$(
@@ -89,8 +92,9 @@ impl<'a> LaserScanMessage<&'a [f32]> {
         let ScanGeometry { angle_min, angle_increment, range_min, range_max } = scan.geometry();
         let ranges = scan.ranges();
         let angle_max = angle_min + angle_increment * ranges.len().saturating_sub(1) as f64;
+        let is_centred = scan.robot_from_scanner() == Isometry2::identity();
         Self {
-            header: Header { stamp: taken, frame_id: BASE },
+            header: Header { stamp: taken, frame_id: if is_centred { BASE } else { SCANNER } },
             angle_min: angle_min as f32,
             angle_max: angle_max as f32,
             angle_increment: angle_increment as f32,
@@ -247,6 +251,21 @@ pub struct TransformStamped {
     pub header: Header,
     pub child_frame_id: &'static str,
     pub transform: Transform,
+}
+
+impl TransformStamped {
+    /// Where the scanner of a scan is on the robot; `None` if it is in its centre, whose frame the scan has.
+    pub fn of_scanner(stamp: Stamp, scan: &Scan) -> Option<Self> {
+        let mount = scan.robot_from_scanner();
+        let [x, y] = mount.translation.vector.into();
+        let transform = Transform {
+            translation: Vector3 { x, y, z: 0.0 },
+            rotation: Quaternion::turn(mount.rotation.angle()),
+        };
+        let header = Header { stamp, frame_id: BASE };
+        let is_mounted = mount != Isometry2::identity();
+        is_mounted.then_some(Self { header, child_frame_id: SCANNER, transform })
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -1,16 +1,22 @@
 //! Scans of ROS, and where their scanners are on the robot.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::{
+    f64::consts::{FRAC_PI_2, PI},
+    sync::Arc,
+};
 
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_logs::{
     ReadingRemark,
     entries::{Content, Entry},
+    messages,
     reader::Log,
-    record::{EventKind, Frame},
+    record::{Event, EventId, EventKind, Frame, RunObserver},
+    recorder::Recorder,
     topic_map::{Role, TopicMap},
 };
-use toposlam_vision::laser::scan::Reading;
+use toposlam_model::driving::odometry::Odometry;
+use toposlam_vision::laser::scan::{Reading, Scan, ScanGeometry};
 
 use super::{
     entries, entries_of,
@@ -194,4 +200,36 @@ fn odometry_is_preferred_to_transforms() {
     // Transforms between other frames are no odometry.
     let log = Log::of_bytes(log_of(&[transforms("/tf", &[wheel])])).unwrap();
     assert_eq!(entries(&log), []);
+}
+
+/// Otherwise the visits of the log would be derived from scans that are shifted or turned.
+#[test]
+fn the_log_of_a_run_says_where_its_scanner_is() {
+    let geometry =
+        ScanGeometry { angle_min: -0.5, angle_increment: 0.5, range_min: 0.1, range_max: 30.0 };
+    for mount in [Isometry2::identity(), Isometry2::new(Vector2::new(-0.25, 0.125), 3.0)] {
+        let scan = Arc::new(Scan::new(geometry, vec![1.0, 2.0, 3.0], mount).unwrap());
+        let mut log = Vec::new();
+        let mut recorder = Recorder::new(&mut log, &messages::Run::default(), None).unwrap();
+        for id in 1..=3 {
+            let frame = Frame { id, scan: Some(scan.clone()), ..Frame::default() };
+            for kind in [EventKind::Odometry(Odometry::default()), EventKind::Frame(frame)] {
+                recorder.event(&Event { id: EventId(id), time: id, truth: None, kind });
+            }
+        }
+        recorder.finish().unwrap();
+        let read = entries(&Log::of_bytes(log).unwrap()).into_iter();
+        let scans: Vec<_> = read
+            .filter_map(|entry| match entry.content {
+                Content::Event(EventKind::Frame(frame)) => frame.scan,
+                _ => None,
+            })
+            .collect();
+        assert_eq!(scans.len(), 3);
+        for read in scans {
+            let off = read.robot_from_scanner().inverse() * mount;
+            assert!(off.translation.vector.norm() < 1e-9 && off.rotation.angle().abs() < 1e-9);
+            assert_eq!(read.ranges(), scan.ranges());
+        }
+    }
 }

@@ -60,7 +60,7 @@ pub enum RobotError {
     Unreachable { master: String, cause: String },
     #[error("DDS cannot be used: {cause}")]
     NoDds { cause: String },
-    #[error("nobody {does} {topic} in domain {domain}, {seconds} s long")]
+    #[error("nobody {does} {topic} in domain {domain}; waited for {seconds} s")]
     Nobody { does: &'static str, topic: String, domain: u16, seconds: f64 },
     #[error("{topic} of the robot is {theirs}; this program needs {ours}")]
     OtherType { topic: String, theirs: String, ours: String },

@@ -150,8 +150,8 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "FILE")]
     failed: Option<PathBuf>,
 
-    /// Check the starts in the folder of --failed first. If one is still not mapped, no others are
-    /// checked
+    /// Check the starts in the folder of --failed first, and remove the files of those that are mapped. If
+    /// one is still not mapped, no others are checked
     #[arg(long, requires = "failed", requires = "explorer", conflicts_with = "keep_going")]
     failed_first: bool,
 

@@ -43,7 +43,6 @@ pub use node::RobotDomain;
 
 /// Static transforms are sent to late nodes within this time.
 const TRANSFORMS: Duration = Duration::from_secs(6);
-const STATIC_FRAMES: &str = "/tf_static";
 const CLOCK: &str = "/clock";
 
 /// The robot behind topics, as soon as odometry and an image, or a scan, have come. Transforms say where its scanner is.
@@ -121,9 +120,11 @@ fn scanner_mount(
     stop: fn() -> bool,
 ) -> Result<Mount, RobotError> {
     let frames = Arc::new(Mutex::new(FrameTree::default()));
-    for (topic, stays) in [(STATIC_FRAMES, true), (recorder::TF, false)] {
-        let (frames, reader) = (frames.clone(), FrameReader::new());
+    for (topic, stays) in [(recorder::TF_STATIC, true), (recorder::TF, false)] {
+        // When the scanner's place is known, no more transforms are kept.
+        let (frames, reader) = (Arc::downgrade(&frames), FrameReader::new());
         node.listen(topic, <TFMessage as Message>::TYPE, stays, move |message| {
+            let Some(frames) = frames.upgrade() else { return };
             let mut frames = frames.lock().unwrap_or_else(PoisonError::into_inner);
             // Others' transforms of another form say nothing about this scanner.
             let _ = message.and_then(|body| reader.add(&body, &mut frames));
@@ -142,8 +143,9 @@ fn scanner_mount(
             Err(cause) => return Err(no_mount(cause)),
             Ok(None) if Instant::now() > until => {
                 let cause = format!(
-                    "no transform of {STATIC_FRAMES} or {} leads from it to base_link, base_footprint or base; \
+                    "no transform of {} or {} leads from it to base_link, base_footprint or base; \
                      publish one with static_transform_publisher",
+                    recorder::TF_STATIC,
                     recorder::TF
                 );
                 return Err(no_mount(cause));

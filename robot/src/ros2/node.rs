@@ -123,7 +123,7 @@ impl DdsNode {
         topic: &str,
         type_name: &str,
         stays: bool,
-        mut heard: impl FnMut(Option<EncodedBody>) + Send + 'static,
+        mut received: impl FnMut(Option<EncodedBody>) + Send + 'static,
     ) -> Result<(), RobotError> {
         let qos = if stays { reliable(true) } else { best_effort() };
         let of = self.topic(topic, type_name, &qos)?;
@@ -133,7 +133,7 @@ impl DdsNode {
             runtime.spawn(async move {
                 let mut messages = reader.async_bare_sample_stream();
                 while let Some(message) = messages.next().await {
-                    heard(message.ok());
+                    received(message.ok());
                 }
             });
         }
