@@ -231,6 +231,18 @@ fn what_is_missing_or_of_another_type_is_said() {
     }
 }
 
+/// The odometry of one would be taken for that of the other.
+#[test]
+fn of_two_robots_on_the_same_topics_none_is_driven() {
+    let stage = Stage::new("two");
+    let robots = [stage.simulate(&[]), stage.simulate(&[])];
+    let output = stage.drive(&[]).ends_within(60);
+    drop(robots);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let expected = "/odom of the robot is published by 2 nodes; this program needs one";
+    assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+}
+
 /// The robot is one of Cyclone DDS that does not move.
 #[test]
 fn the_type_of_commands_is_the_one_that_the_robot_reads_and_no_other_is_sent() {

@@ -99,7 +99,7 @@ impl RosOptions {
                 let (domain, kind) = (self.ros2_domain()?, self.command_type());
                 toposlam_robot::ros2::connect(&domain, topics, sensor, kind, patience, stop)
             }
-            #[allow(unreachable_patterns, reason = "with both features there is no other")]
+            #[cfg(not(all(feature = "ros1", feature = "ros2")))]
             _ => return Err(self.missing()),
         };
         match connected {
@@ -129,7 +129,7 @@ impl RosOptions {
                 let served = DomainTopics::new(&self.ros2_domain()?, topics, kind);
                 Ok(Box::new(served.map_err(at)?))
             }
-            #[allow(unreachable_patterns, reason = "with both features there is no other")]
+            #[cfg(not(all(feature = "ros1", feature = "ros2")))]
             _ => Err(self.missing()),
         }
     }
@@ -150,7 +150,7 @@ impl RosOptions {
     }
 
     /// The error of a program that does not speak this ROS.
-    #[allow(dead_code, reason = "with both features nothing is missing")]
+    #[cfg(not(all(feature = "ros1", feature = "ros2")))]
     pub(super) fn missing(&self) -> CliError {
         let (option, version) = if self.ros.is_some() { ("--ros", 1) } else { ("--ros2", 2) };
         let cause = format!(

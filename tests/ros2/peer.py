@@ -169,11 +169,18 @@ def publish(kind, commands=()):
         time.sleep(0.02)
 
 
-if __name__ == "__main__":
-    verb, what = sys.argv[1:]
+def main(verb, what):
     if verb == "listen":
         listen(what)
     elif verb == "publish":
         publish(what)
     else:
         publish("plain", {"Twist": [Twist], "TwistStamped": [TwistStamped], "both": [Twist, TwistStamped]}[what])
+
+
+if __name__ == "__main__":
+    try:
+        main(*sys.argv[1:])
+    except KeyboardInterrupt:
+        # The end of the test.
+        pass

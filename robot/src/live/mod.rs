@@ -9,6 +9,8 @@ pub(crate) mod messages;
 mod robot;
 pub(crate) mod topic;
 
+use std::time::Duration;
+
 use toposlam_logs::recorder;
 use toposlam_model::driving::scene::MarkerView;
 use toposlam_vision::laser::scan::Scan;
@@ -16,8 +18,11 @@ use toposlam_vision::laser::scan::Scan;
 use crate::{robot::RobotError, superscout::WheelSpeeds};
 
 pub use messages::{Nanoseconds, Reckoning, SECOND};
-pub(crate) use robot::{Connection, FIRST, SensorTopics};
+pub(crate) use robot::{Connection, SensorTopics};
 pub use robot::{LiveRobot, LiveSensor};
+
+/// The longest time until nodes have found each other.
+pub(crate) const FIRST: Duration = Duration::from_secs(10);
 
 /// The topics of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]

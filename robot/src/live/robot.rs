@@ -9,7 +9,7 @@ use toposlam_logs::{
 use toposlam_model::driving::scene::MarkerView;
 
 use super::{
-    Wheels,
+    FIRST, Wheels,
     base::LiveBase,
     messages::{Nanoseconds, Reckoning, ScanReading, Stamped},
     topic::Subscription,
@@ -136,8 +136,6 @@ impl LiveRobot {
 
 /// A marker that was seen with a scan is reported within this time after it.
 const MARKER_DELAY: Duration = Duration::from_millis(250);
-/// The longest time until nodes have found each other.
-pub(crate) const FIRST: Duration = Duration::from_secs(10);
 
 impl Robot for LiveRobot {
     fn capture(&mut self) -> Result<Frame, RobotError> {

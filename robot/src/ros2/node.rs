@@ -186,6 +186,18 @@ impl DdsNode {
                     return Err(RobotError::Nobody { does, topic, domain, seconds });
                 }
                 [] => {}
+                // Another robot, or one that ended a moment ago.
+                [_] if side == OtherSide::Publishes && endpoints.len() > 1 => {
+                    if Instant::now() > until {
+                        let ours = "one: --namespace or --topic names those of a robot".to_owned();
+                        let theirs = format!("published by {} nodes", endpoints.len());
+                        return Err(RobotError::OtherType {
+                            topic: topic.to_owned(),
+                            theirs,
+                            ours,
+                        });
+                    }
+                }
                 [only] => {
                     let Some(kind) = known.iter().find(|kind| **kind == only) else {
                         return other(only.to_owned());
