@@ -7,8 +7,7 @@ mod relocation;
 
 use thiserror::Error;
 use toposlam_logs::record::{
-    Arrival, Event, EventId, EventKind, Frame, FrameSensor, MapRecord, RunEnd, RunEnding,
-    RunObserver, SensingError, nanoseconds,
+    Arrival, EventKind, Frame, FrameSensor, RunEnd, RunEnding, RunObserver, SensingError,
 };
 use toposlam_model::{
     driving::{
@@ -24,8 +23,9 @@ use toposlam_model::{
 
 use crate::{
     budget::{Allowance, BudgetLimit, Spent},
+    event_log::EventLog,
     measured_hallway::{MeasuredHallway, direction},
-    robot::{Robot, RobotError, Sample},
+    robot::{Robot, RobotError},
     run_settings::RunSettings,
 };
 
@@ -49,7 +49,7 @@ enum Standpoint {
 pub struct RobotExplorer<R, S, O = ()> {
     robot: R,
     sensor: S,
-    observer: O,
+    log: EventLog<O>,
     place: Option<Standpoint>,
     /// The number of doors taken: the number of the last move.
     last_move: u64,
@@ -69,10 +69,6 @@ pub struct RobotExplorer<R, S, O = ()> {
     hallway: Option<MeasuredHallway>,
     measured: ArrivalMeasurement,
     last: Option<Frame>,
-    events: u64,
-    /// The number of samples of the robot's track that were reported, and the time of the last.
-    samples: usize,
-    sampled: f64,
 }
 
 #[derive(Debug, Error)]
@@ -90,14 +86,53 @@ enum Unusable {
 }
 
 /// The robot gives up after this many unusable frames in a row.
-const RETAKES: u32 = 6;
+pub(crate) const RETAKES: u32 = 6;
+
+/// A robot that keeps within a budget.
+pub(crate) trait Budgeted: World<Error = ExplorerError> {
+    fn allowance(&self) -> &Allowance;
+
+    /// The number of doors taken.
+    fn last_move(&self) -> u64;
+
+    /// Returns to the marker, and returns the reason.
+    fn return_to_marker(&mut self, limit: BudgetLimit) -> ExplorerError {
+        while let Some(door) = self.allowance().door_back() {
+            match self.traverse(door) {
+                Ok(()) => {}
+                Err(error @ (ExplorerError::Stopped { .. } | ExplorerError::Robot(_))) => {
+                    return error;
+                }
+                Err(_) => break,
+            }
+        }
+        let is_at_marker = self.allowance().is_at_marker();
+        ExplorerError::Budget { moves: self.last_move(), limit, is_at_marker }
+    }
+}
+
+/// How a run ended.
+pub(crate) fn ending(
+    mapped: &Result<MappedWorld, MappingError<ExplorerError>>,
+    moves: u64,
+) -> RunEnd {
+    let ending = match mapped {
+        Ok(_) => RunEnding::Mapped,
+        Err(MappingError::World(ExplorerError::Stopped { .. })) => RunEnding::Stopped,
+        Err(error @ MappingError::World(ExplorerError::Budget { .. })) => {
+            RunEnding::OutOfBudget(error.to_string())
+        }
+        Err(error) => RunEnding::GaveUp(error.to_string()),
+    };
+    RunEnd { moves, ending }
+}
 
 impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     pub fn new(robot: R, sensor: S, observer: O) -> Self {
         Self {
             robot,
             sensor,
-            observer,
+            log: EventLog::new(observer),
             place: None,
             returns_at_obstacles: false,
             stall: None,
@@ -110,9 +145,6 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             moves: 0,
             door: None,
             last: None,
-            events: 0,
-            samples: 0,
-            sampled: 0.0,
         }
     }
 
@@ -134,7 +166,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     pub fn into_parts(self) -> (R, O) {
-        (self.robot, self.observer)
+        (self.robot, self.log.observer)
     }
 
     /// Maps the building. A robot that recovers returns at an obstacle, as from a dead end. With earlier walks it may
@@ -151,72 +183,22 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.returns_at_obstacles |= method.recovers();
         self.begins_anywhere = !earlier.is_empty();
         let mut observer = |explorer: &mut Self, journey: &MapWalk, event: MappingEvent| {
-            explorer.mapping_event(journey, event);
+            explorer.log.mapping(&explorer.robot, journey, event);
         };
         let (run, mut mapped) = method.map_world(self, dart_bound, earlier, &mut observer);
         if let Err(MappingError::World(ExplorerError::Budget { limit, .. })) = mapped {
             mapped = Err(MappingError::World(self.return_to_marker(limit)));
         }
-        let ending = match &mapped {
-            Ok(_) => RunEnding::Mapped,
-            Err(MappingError::World(ExplorerError::Stopped { .. })) => RunEnding::Stopped,
-            Err(error @ MappingError::World(ExplorerError::Budget { .. })) => {
-                RunEnding::OutOfBudget(error.to_string())
-            }
-            Err(error) => RunEnding::GaveUp(error.to_string()),
-        };
-        self.emit(EventKind::End(RunEnd { moves: self.moves, ending }));
+        self.emit(EventKind::End(ending(&mapped, self.moves)));
         (run, mapped)
-    }
-
-    /// Returns to the marker, and returns the reason.
-    fn return_to_marker(&mut self, limit: BudgetLimit) -> ExplorerError {
-        while let Some(door) = self.allowance.door_back() {
-            match self.traverse(door) {
-                Ok(()) => {}
-                Err(error @ (ExplorerError::Stopped { .. } | ExplorerError::Robot(_))) => {
-                    return error;
-                }
-                Err(_) => break,
-            }
-        }
-        let is_at_marker = self.allowance.is_at_marker();
-        ExplorerError::Budget { moves: self.last_move, limit, is_at_marker }
     }
 
     fn spent(&self) -> Spent {
         Spent::new(self.last_move as f64, self.robot.odometry().time, self.metres)
     }
 
-    fn mapping_event(&mut self, journey: &MapWalk, event: MappingEvent) {
-        self.observer.mapping(journey, event);
-        if matches!(event, MappingEvent::Moved { .. }) {
-            return;
-        }
-        self.emit(EventKind::Hypothesis { moves: journey.moves(), event });
-        if event.grows_map() {
-            self.emit(EventKind::Map(MapRecord::from_walk(journey)));
-        }
-    }
-
-    /// Reports an event that happens now, after the motions that led to it.
     fn emit(&mut self, kind: EventKind) {
-        let samples = self.robot.track().get(self.samples..).unwrap_or_default().to_vec();
-        self.samples += samples.len();
-        for Sample { speed, turning, reading } in samples {
-            // The wheels were commanded when they were last read.
-            let motion = EventKind::Motion { forward: speed, turn: turning };
-            self.emit_at(self.sampled, motion);
-            self.emit_at(reading.time, EventKind::Odometry(reading.odometry));
-            self.sampled = reading.time;
-        }
-        self.emit_at(self.robot.odometry().time, kind);
-    }
-
-    fn emit_at(&mut self, seconds: f64, kind: EventKind) {
-        self.events += 1;
-        let (id, time) = (EventId(self.events), nanoseconds(seconds));
-        self.observer.event(&Event { id, time, truth: self.robot.truth(), kind });
+        self.log.emit(&self.robot, kind);
     }
 
     /// Drives a path to its end.
@@ -224,7 +206,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         let mut junction = None;
         loop {
             let (moves, door) = (self.last_move, self.door);
-            if self.observer.stop() {
+            if self.log.observer.stop() {
                 return Err(ExplorerError::Stopped { moves });
             }
             let (frame, scene) = self.look()?;
@@ -373,6 +355,16 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.hallway = Some(MeasuredHallway::from(Some(self.robot.odometry().odometry)));
         self.allow_for(state.percept);
         self.emit(EventKind::Arrival(arrival));
+    }
+}
+
+impl<R: Robot, S: FrameSensor, O: RunObserver> Budgeted for RobotExplorer<R, S, O> {
+    fn allowance(&self) -> &Allowance {
+        &self.allowance
+    }
+
+    fn last_move(&self) -> u64 {
+        self.last_move
     }
 }
 

@@ -5,6 +5,8 @@
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
 pub mod budget;
+pub mod corridors;
+mod event_log;
 pub mod explorer;
 #[cfg(feature = "live")]
 pub mod live;

@@ -7,7 +7,7 @@ use std::{
 };
 
 use image::RgbImage;
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -27,7 +27,7 @@ use toposlam_vision::geometry::unit;
 
 use crate::{
     render::{Building, Effects, Rig, StreamPurpose, exposed, file, stream},
-    truth::{HallwayTruth, JunctionTruth, Truth, true_marker},
+    truth::{HallwayTruth, JunctionTruth, Truth, angle, true_marker},
 };
 
 /// The camera of a simulated robot.
@@ -156,6 +156,8 @@ impl RenderingCamera {
 pub(super) struct SceneCamera {
     pub(super) plan: Arc<FloorPlan>,
     pub(super) marker: Dart,
+    /// See [`SimulationConfig::marker_off`](crate::SimulationConfig::marker_off).
+    pub(super) marker_off: f64,
     /// Multiple of the measured error rates and errors.
     pub(super) noise: f64,
     pub(super) seed: u64,
@@ -220,7 +222,9 @@ impl SceneCamera {
         let vertex = self.plan.graph().vertex(self.marker);
         let near = truth.junctions().iter().any(|near| near.vertex == vertex);
         let marker = true_marker(&self.plan, self.marker, pose);
-        let [x, y] = marker.position;
+        let along = angle(self.plan.direction(self.marker)) - pose.heading;
+        let position = Point2::from(marker.position) + self.marker_off * unit(along);
+        let [x, y]: [f64; 2] = position.into();
         (near && MARKER_SEEN.contains(&x.hypot(y)) && !chance.happens(MISSED)).then(|| MarkerView {
             position: [x + chance.off(PLACE), y + chance.off(PLACE)],
             axis: undirected(marker.axis + chance.off(HEADING)),
@@ -322,7 +326,8 @@ mod tests {
         let junction = JunctionTruth::from_plan(&plan, plan.graph().vertex(facing), pose);
         let right = SceneClass::Junction(junction.shape.unwrap());
         let count = |noise: f64| {
-            let camera = SceneCamera { plan: plan.clone(), marker: facing, noise, seed: 4 };
+            let camera =
+                SceneCamera { plan: plan.clone(), marker: facing, marker_off: 0.0, noise, seed: 4 };
             let scene = |number| camera.scene(pose, number, FrameLight::default());
             let classes: Vec<_> =
                 (0..20_000).map(|number| SceneClass::from_scene(&scene(number))).collect();

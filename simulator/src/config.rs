@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use nalgebra::Point2;
 use toposlam_model::{
     driving::pose::Pose,
     embedded_graph::Dart,
@@ -11,11 +12,18 @@ use toposlam_model::{
 use super::faults::RobotFault;
 use crate::truth::angle;
 
+/// A robot in a network of corridors begins this far from its first junction, or in the middle of the corridor, in metres.
+const BEFORE: f64 = 9.0;
+/// There the marker lies this far from the walls of its junction, in metres.
+const MARKER_BESIDE: f64 = 0.2;
+
 /// The start, the noise and the faults of a simulated robot.
 #[derive(Clone, Debug)]
 pub struct SimulationConfig {
     pub plan: Arc<FloorPlan>,
     pub marker: Dart,
+    /// How far the marker lies from the turning point, along its dart, in metres.
+    pub marker_off: f64,
     pub pose: Pose,
     /// Noise of the wheels as a multiple of [`MotionNoise::DEFAULT`](crate::MotionNoise). Without images, it also
     /// multiplies the measured errors of sensing.
@@ -34,12 +42,27 @@ impl SimulationConfig {
         Self {
             plan,
             marker: facing,
+            marker_off: 0.0,
             pose,
             noise: 1.0,
             faults: Vec::new(),
             keeps_track: false,
             seed,
         }
+    }
+
+    /// A robot in a network of corridors: within a dart's corridor, on its way to the dart's junction. The marker lies in that
+    /// corridor, beside the junction.
+    pub fn in_corridor(plan: Arc<FloorPlan>, facing: Dart, seed: u64) -> Self {
+        let graph = plan.graph();
+        let [from, to] = [facing, graph.opposite(facing)]
+            .map(|dart| Point2::from(plan.junction(graph.vertex(dart)).position));
+        let off = to - from;
+        let position = from + (BEFORE / off.norm()).min(0.5) * off;
+        let marker_off = plan.hallway_width() / 2.0 + MARKER_BESIDE;
+        let at_start = Self::at_start(plan, facing, seed);
+        let pose = Pose { position: position.into(), ..at_start.pose };
+        Self { marker_off, pose, ..at_start }
     }
 }
 
@@ -48,6 +71,11 @@ impl SimulationConfig {
 pub fn start_pose(plan: &FloorPlan, facing: Dart) -> Pose {
     let position = plan.junction(plan.graph().vertex(facing)).position;
     Pose { position, heading: angle(plan.direction(facing).reversed()) }
+}
+
+/// The possible starts in a plan for a robot in a network of corridors: the darts of its junctions with three doors.
+pub fn corridor_starts_of(plan: &FloorPlan) -> Vec<Dart> {
+    plan.graph().darts().filter(|dart| plan.graph().degree_around(*dart) >= 3).collect()
 }
 
 /// The possible starts in a plan: the darts of its Ls.

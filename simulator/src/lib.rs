@@ -41,7 +41,7 @@ pub use crate::render::{
     Building, BuildingLook, CameraRay, Colour, EffectScope, EffectSettings, Effects, FloorCovering,
     KNOBS, Knob, KnobError, LOOKS, RayPath, Rig, RigErrors, label_mask, labels, render,
 };
-pub use config::{SimulationConfig, start_pose, starts_of};
+pub use config::{SimulationConfig, corridor_starts_of, start_pose, starts_of};
 pub use faults::{FAULTS, FOR_EVER, FaultError, FaultKind, RobotFault};
 pub use learned_sensors::{LearnedSensors, LearningError, learned};
 pub use motion::{MotionNoise, SimulatedBase};

@@ -77,8 +77,8 @@ impl SimulationConfig {
     }
 
     fn scene_camera(&self) -> SceneCamera {
-        let &Self { ref plan, marker, noise, seed, .. } = self;
-        SceneCamera { plan: plan.clone(), marker, noise, seed }
+        let &Self { ref plan, marker, marker_off, noise, seed, .. } = self;
+        SceneCamera { plan: plan.clone(), marker, marker_off, noise, seed }
     }
 }
 

@@ -10,6 +10,7 @@ use toposlam_logs::recorder::{CMD_VEL, IMAGE, MARKER, ODOM, SCAN};
 use super::{
     CliError, Outcome,
     exit_codes::help_end,
+    laser_options::LaserOptions,
     robot_sensor::{SensorChoice, one_sensor},
     ros_options::RosOptions,
     run_options::{GivenOptions, RunOptions},
@@ -24,6 +25,10 @@ use super::{
 /// With --sensor laser it reads a laser scanner. In ROS 2, /tf_static says where on the robot it is; in ROS 1, it is
 /// in the robot's centre and looks ahead. A scanner does not see the marker: another detector must publish the
 /// marker's pose in the robot's frame, x along the marker.
+///
+/// With --corridors a junction is where at least three ways meet that lead on for 10 m or more; dead ends are vertices, and
+/// bends are not. The robot stands in a corridor, some metres from its first junction, and looks there; its marker is on
+/// the floor before that junction. It drives into ways that it does not see far enough.
 ///
 /// With --recover the robot goes on after a contradiction, and if it gets lost. A hallway that it cannot pass
 /// is a dead end: it maps everything else, and reports the doors that are blocked.
@@ -58,6 +63,12 @@ pub(super) struct DriveArguments {
     /// The sensor by which the robot drives: camera or laser
     #[arg(long, value_name = "SENSOR", default_value = "camera", value_parser = one_sensor())]
     sensor: SensorChoice,
+    /// With --sensor laser: the building is a network of corridors, at any angle and 10 m or longer, and not one of short
+    /// hallways at right angles
+    #[arg(long)]
+    corridors: bool,
+    #[command(flatten)]
+    laser: LaserOptions,
     /// The camera
     #[arg(long, value_name = "FILE")]
     calibration: Option<PathBuf>,
@@ -125,7 +136,7 @@ This command needs a build with ROS: cargo build --release --features ros2
 Examples:
   toposlam drive --ros http://robot:11311 --calibration camera.toml \\
     --colours colours.toml --log run.mcap --map map.toml
-  toposlam drive --ros2 --network --sensor laser --log run.mcap
+  toposlam drive --ros2 --network --sensor laser --corridors --recover --log run.mcap
 
 A simulated robot:
   toposlam simulate worlds/shape-6.toml --ros2 --sensor laser";

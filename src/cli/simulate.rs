@@ -17,6 +17,7 @@ use toposlam_robot::{
 };
 use toposlam_simulator::{
     FAULTS, FOR_EVER, LearnedSensors, LearningError, RobotFault, SimulatedRobot, SimulationConfig,
+    corridor_starts_of,
     run::{Run, RunOutcome, offline, run},
 };
 use toposlam_vision::{camera::Camera, colour::ColourModel};
@@ -32,7 +33,7 @@ use super::{
     run_capture::RunCapture,
     run_options::{GivenOptions, RunOptions},
     run_report::{RobotReport, RobotRun, RunReport},
-    text::{capital, grouped},
+    text::{capital, grouped, quoted},
 };
 use crate::{page, picture, story};
 
@@ -109,6 +110,15 @@ pub(super) struct SimulateArguments {
     options: RunOptions,
     #[command(flatten)]
     ros: RosOptions,
+    /// With --ros2 or --ros: the robot stands in a corridor, on its way to a junction with three doors, where its marker
+    /// lies, as drive --corridors needs it
+    #[arg(
+        long,
+        help_heading = "ROS",
+        requires = "served",
+        conflicts_with_all = NOT_DRIVEN
+    )]
+    corridors: bool,
     /// With --ros2 or --ros: how fast simulated time passes, as a multiple of real time
     #[arg(
         long,
@@ -186,8 +196,13 @@ impl SimulateArguments {
         self.options.check_places(true)?;
         let world = input::read_world(&self.plan)?;
         let plan = Arc::new(input::floor_plan(&self.plan, &world)?.clone());
-        let facing = self.start_in(&world, &plan)?;
-        feasible::check(&self.plan, &world, &plan, facing)?;
+        let facing = if self.corridors {
+            self.corridor_start_in(&world, &plan)?
+        } else {
+            let facing = self.start_in(&world, &plan)?;
+            feasible::check(&self.plan, &world, &plan, facing)?;
+            facing
+        };
         if let Some(scanner) = &scanner {
             let is_enough = scanner.check_range(plan.hallway_width());
             is_enough.map_err(|error| CliError::at("--scanner", error))?;
@@ -199,7 +214,11 @@ impl SimulateArguments {
             noise: self.noise,
             keeps_track: self.options.log.is_some(),
             faults: self.fault.clone(),
-            ..SimulationConfig::at_start(plan.clone(), facing, self.seed)
+            ..if self.corridors {
+                SimulationConfig::in_corridor(plan.clone(), facing, self.seed)
+            } else {
+                SimulationConfig::at_start(plan.clone(), facing, self.seed)
+            }
         };
         let (robot, sensor, sensors, frame_kind) = match (&scanner, self.by_scene) {
             (Some(scanner), _) if self.sensor == SensorChoice::Laser => {
@@ -238,6 +257,24 @@ impl SimulateArguments {
             world.at_text(facing),
         );
         Ok(nearest)
+    }
+
+    /// The corridor in which the run starts, and its junction.
+    fn corridor_start_in(&self, world: &NamedWorld, plan: &FloorPlan) -> Result<Dart, CliError> {
+        let facing = input::start_of(world, self.start.as_deref())?;
+        let starts = corridor_starts_of(plan);
+        if starts.contains(&facing) {
+            return Ok(facing);
+        }
+        let wrong = |cause: String| Err(CliError::in_file(&self.plan, cause));
+        match starts.first() {
+            Some(&start) if self.start.is_none() => Ok(start),
+            Some(&start) => {
+                let start = quoted(&world.start_text(start));
+                wrong(format!("{} has not three doors, as {start} has", world.at_text(facing)))
+            }
+            None => wrong("it has no junction with three doors".to_owned()),
+        }
     }
 
     fn camera(&self) -> Result<Camera, CliError> {

@@ -7,7 +7,7 @@ use toposlam_model::{
     percept::Door,
 };
 
-use crate::{budget::BudgetLimit, robot::RobotError};
+use crate::{budget::BudgetLimit, corridors::CorridorFailure, robot::RobotError};
 
 /// Why a run ended early. Moves are counted from 1; 0 is the start.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -18,6 +18,9 @@ pub enum ExplorerError {
     /// The camera gives no usable image, or the scanner no usable scan. `cause` is what is wrong with the last one.
     #[error("on move {moves}, {}: {images} unusable {frame}s in a row: {cause}", by_door(*.door))]
     NoImage { moves: u64, door: Option<Door>, images: u32, cause: String, frame: FrameKind },
+    /// A robot in a network of corridors does not know at which junction it is.
+    #[error("on move {moves}, {}: {cause}", by_door(*.door))]
+    NoJunction { moves: u64, door: Option<Door>, cause: CorridorFailure },
     #[error("the robot is at a junction with {}; a run starts at an L", counted(*.degree as usize, "door"))]
     NotAnL { degree: u32 },
     #[error(transparent)]

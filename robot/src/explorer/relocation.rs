@@ -33,7 +33,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     /// Waits until an image shows a place, without moving.
     fn wait_for_sight(&mut self) -> Result<(), ExplorerError> {
         for _ in 0..PATIENCE {
-            if self.observer.stop() {
+            if self.log.observer.stop() {
                 return Err(ExplorerError::Stopped { moves: self.last_move });
             }
             match self.frame() {

@@ -5,12 +5,15 @@ use std::io::Write;
 use toposlam_logs::record::RobotSensor;
 use toposlam_model::mapping::{FACING, MappingError};
 use toposlam_robot::{
+    corridors::CorridorExplorer,
     explorer::{ExplorerError, RobotExplorer},
     live::{LiveSensor, RobotTopics},
     robot::Robot,
     run_settings::{LaserVertices, RunSettings},
 };
-use toposlam_vision::{camera::Camera, colour::ColourModel, sensing::Sensor};
+use toposlam_vision::{
+    camera::Camera, colour::ColourModel, laser::params::LaserParams, sensing::Sensor,
+};
 
 use super::{CliError, DriveArguments, Outcome, TOPICS};
 use crate::cli::{
@@ -26,7 +29,15 @@ impl DriveArguments {
         self.options.check_places(false)?;
         let settings = self.options.settings(None)?;
         let sensors = self.sensors()?;
-        let laser = sensors.is_none().then_some(LaserVertices::OF_HALLWAYS);
+        let corridors = self.corridors()?;
+        if corridors.is_some() && !settings.earlier.is_empty() {
+            return Err(CliError::at(
+                "--resume",
+                "a run in --corridors does not go on from others",
+            ));
+        }
+        let hallways = sensors.is_none().then_some(LaserVertices::OF_HALLWAYS);
+        let laser = corridors.as_ref().map(LaserVertices::from).or(hallways);
         let settings = RunSettings { laser, ..settings };
         let (sensor, live, frame_kind) = match &sensors {
             Some((camera, colours)) => {
@@ -53,10 +64,16 @@ impl DriveArguments {
             if self.options.json { None } else { Some(&mut *out) };
         let head = format!("A robot {place}.");
         let mut capture = RunCapture::new(head, story_out, frame_kind, None)?;
-        let mut explorer = RobotExplorer::new(robot, sensor, (&mut log, &mut capture));
-        let (mapping, mapped) = explorer.map(&settings);
-        let moves = explorer.moves();
-        let (robot, _) = explorer.into_parts();
+        let observer = (&mut log, &mut capture);
+        let (mapping, mapped, moves, robot) = if let Some(params) = &corridors {
+            let mut explorer = CorridorExplorer::new(robot, params, observer);
+            let (mapping, mapped) = explorer.map(&settings);
+            (mapping, mapped, explorer.moves(), explorer.into_parts().0)
+        } else {
+            let mut explorer = RobotExplorer::new(robot, sensor, observer);
+            let (mapping, mapped) = explorer.map(&settings);
+            (mapping, mapped, explorer.moves(), explorer.into_parts().0)
+        };
         let logged = self.options.close(log);
         let (seconds, frames) = (robot.odometry().time, robot.frames());
         // The robot stops before anything else.
@@ -115,6 +132,20 @@ impl DriveArguments {
             return Ok(None);
         };
         Ok(Some((input::read_camera(camera)?, input::read_colours(colours)?)))
+    }
+
+    /// How scans are sensed in a network of corridors; `None` in other buildings.
+    fn corridors(&self) -> Result<Option<LaserParams>, CliError> {
+        if !self.corridors {
+            return match self.laser.given() {
+                Some(option) => Err(CliError::at(option, "it has an effect only with --corridors")),
+                None => Ok(None),
+            };
+        }
+        if self.sensor != SensorChoice::Laser {
+            return Err(CliError::at("--corridors", "add --sensor laser"));
+        }
+        self.laser.params(None).map(Some)
     }
 
     /// The name of a topic.

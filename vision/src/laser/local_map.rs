@@ -25,6 +25,8 @@ pub struct LocalMap {
     pub clearances: Clearances,
     /// The middle lines of its ways; `None` if the robot has no way.
     pub skeleton: Option<Skeleton>,
+    /// All of them, arms or not.
+    pub ways: WayGraph,
     /// Those that count.
     pub graph: WayGraph,
 }
@@ -94,10 +96,10 @@ impl<'a> LocalWays<'a> {
         let places = graph.places(params);
         let possible_places =
             if any_in_doubt { self.places(CountedArms::SeenOrInDoubt) } else { places.clone() };
-        let Self { clearances, skeleton, .. } = self;
+        let Self { clearances, skeleton, graph: ways, .. } = self;
         let width =
             skeleton.as_ref().and_then(|ways| ways.width_at(robot, &clearances, &params.map));
-        let map = LocalMap { clearances, skeleton, graph };
+        let map = LocalMap { clearances, skeleton, ways, graph };
         LocalView { map, places, possible_places, width }
     }
 }

@@ -11,6 +11,7 @@
 //! * `ends`: where the ways around the robot go on unseen, and where they end;
 //! * `skeleton`: their middle lines, the generalised Voronoi graph;
 //! * `arm_view`: how far one sees along an arm, and beside which walls; `viewpoint`: where no scan looked;
+//! * [`navigation`]: how a robot goes on along them, and where they meet near it;
 //! * [`way_graph`]: its meet points and the arms that count, and `junctions`: junctions, corners and dead ends;
 //! * [`local_map`]: all of these steps on one map;
 //! * [`sensor`]: the views of a robot that drives, and [`pictures`] of them;
@@ -28,6 +29,7 @@ mod grid;
 mod junctions;
 pub mod local_map;
 mod matching;
+pub mod navigation;
 pub mod params;
 mod passes;
 pub mod pictures;

@@ -24,6 +24,11 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use crate::params;
 
+/// The walls of a corridor return rays up to this part of a scanner's range: there they meet it at a small angle.
+const WALLS_REACHED: f64 = 0.95;
+/// A way is known up to this part of a scanner's range.
+const WAY_KNOWN: f64 = 0.8;
+
 params! {
     /// All parameters of sensing with a laser scanner.
     LaserParams {
@@ -264,6 +269,20 @@ params! {
     }
 }
 
+impl LaserParams {
+    /// The same for a scanner of this range, in metres. In a corridor the readings between the farthest points of its walls that
+    /// a scanner reaches have no return: they show that nothing is nearer. And a way is known no farther than its range.
+    #[must_use]
+    pub fn for_range(mut self, range: f64) -> Self {
+        let Self { map, arm, .. } = &mut self;
+        let reached = WALLS_REACHED * range;
+        let silent = 2.0 * (arm.max_width / 2.0 / reached.max(arm.max_width)).asin();
+        map.max_silence = map.max_silence.max(silent);
+        arm.min_possible = arm.min_possible.min(WAY_KNOWN * range);
+        self
+    }
+}
+
 impl LocalMapParams {
     /// The number of cells of a side of a local map; the robot is in the one in the middle.
     pub(super) fn window(&self) -> usize {
@@ -307,6 +326,17 @@ mod tests {
         // A whole number is as good as any other.
         let params: LaserParams = read("[arm]\nmin_gap = 0").unwrap();
         assert!(params.arm.min_gap.abs() < 1e-12);
+    }
+
+    /// With 30 m nothing changes; with 3.5 m a corridor 2 m wide shows walls up to 17 degrees from its axis.
+    #[test]
+    fn a_scanner_of_a_short_range_shows_that_nothing_is_near_where_nothing_returns() {
+        let seen_to = |range| LaserParams::default().for_range(range);
+        assert_eq!(seen_to(30.0), LaserParams::default());
+        let short = seen_to(3.5);
+        assert!(short.map.max_silence > 2.0 * 17_f64.to_radians(), "{short:?}");
+        assert!((short.arm.min_possible - 2.8).abs() < 1e-9);
+        assert!(seen_to(0.1).map.max_silence <= PI);
     }
 
     const ERRORS: &str = r#"

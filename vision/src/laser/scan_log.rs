@@ -121,6 +121,9 @@ impl ScanLogBuilder {
             params.matching.rounds = ROUNDS;
         }
         let chosen = choice.finish();
+        if let Some(first) = chosen.first() {
+            params = params.for_range(first.scan.geometry().range_max);
+        }
         // Where scans are matched must not depend on the frame of odometry: the axes are along the walls of the first scan.
         let first = chosen.first().filter(|_| params.matching.rounds > 0);
         let frame =

@@ -87,6 +87,9 @@ impl PlaceSensor for LaserSensor {
 
     /// `None` if the robot has hardly moved since the last view, or if the odometry is more than 10,000 km from its origin.
     fn view(&mut self, scan: &Scan, odometry: &Odometry) -> Option<PlaceView> {
+        if self.frame.is_none() {
+            self.params = self.params.for_range(scan.geometry().range_max);
+        }
         let params = self.params.map;
         if !is_near_origin(odometry) {
             return None;

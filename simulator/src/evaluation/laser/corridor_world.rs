@@ -34,6 +34,7 @@ pub struct CorridorArm {
 }
 
 /// The graph of a building's junctions and dead ends. Its bends are no vertices.
+#[derive(Debug)]
 pub(super) struct SmoothedWorld {
     pub(super) graph: EmbeddedGraph,
     /// For each dart, the places from and to which its first corridor leads.

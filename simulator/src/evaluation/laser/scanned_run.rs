@@ -2,32 +2,35 @@
 
 use std::borrow::Cow;
 
-use rand::seq::IndexedRandom;
+use rand::{RngExt, SeedableRng, seq::IndexedRandom};
+use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_logs::{
     messages,
-    record::{RunEnding, RunObserver, StoppedBy},
+    record::{RunObserver, StoppedBy},
     recorder::Recorder,
     writer::LogWriteError,
 };
 use toposlam_model::{
     check::judge_map,
+    driving::pose::Pose,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     isomorphism::Candidate,
     mapping::{ExploredMap, FACING, MappingError, MappingMethod},
 };
-use toposlam_robot::run_settings::RunSettings;
+use toposlam_robot::{
+    corridors::CorridorExplorer, explorer::ExplorerError, run_settings::RunSettings,
+};
 use toposlam_vision::geometry::angle;
 
 use super::{
+    corridor_robot::{CorridorRobot, PerceptJudge},
     corridor_world::{CorridorWorld, SmoothedWorld},
     judged_walk::WalkSampler,
-    laser_robot::{LaserRobot, ScanFailure},
-    walk::WalkDriver,
 };
 use crate::run::RobotOutcome;
 
-pub use super::laser_robot::PerceptTally;
+pub use super::corridor_robot::PerceptTally;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScannedRun {
@@ -54,9 +57,9 @@ struct RunStart {
     smoothed: SmoothedWorld,
     /// Where the marker lies.
     facing: Dart,
-    driver: WalkDriver,
-    /// The direction in which the robot drives off.
-    towards: f64,
+    /// Where the robot begins, and the drift of its odometry, in radians a metre.
+    pose: Pose,
+    drift: f64,
 }
 
 impl WalkSampler {
@@ -64,15 +67,17 @@ impl WalkSampler {
         let seed = self.run_seed(number);
         let world = CorridorWorld::random(self.buildings, seed);
         let smoothed = world.smoothed()?;
-        let mut driver = WalkDriver::new(self.drift, seed);
+        let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let drift = self.drift * chance.random_range(-1.0..=1.0);
         let graph = &smoothed.graph;
         let starts: Vec<Dart> =
             graph.darts().filter(|dart| graph.degree_around(*dart) >= 3).collect();
-        let &facing = starts.choose(&mut driver.chance)?;
+        let &facing = starts.choose(&mut chance)?;
         let [start, behind] = smoothed.corridors[facing.at()].map(|place| world.places[place]);
         let off = behind - start;
-        driver.at = start + (BEFORE / off.x.hypot(off.y)).min(0.5) * off;
-        Some(RunStart { world, smoothed, facing, driver, towards: angle(-off) })
+        let position = start + (BEFORE / off.x.hypot(off.y)).min(0.5) * off;
+        let pose = Pose { position: position.into(), heading: angle(-off) };
+        Some(RunStart { world, smoothed, facing, pose, drift })
     }
 
     /// The graph of the junctions and dead ends of a run's building, and where its marker lies.
@@ -111,30 +116,27 @@ impl WalkSampler {
         method: MappingMethod,
         observer: &mut dyn RunObserver,
     ) -> Option<ScannedRun> {
-        let RunStart { world, smoothed, facing, driver, towards } = self.start(number)?;
-        let scanner = self.scanner(&world, number, self.run_seed(number));
-        let RunSettings { dart_bound, .. } = Self::run_settings(&smoothed.graph, method);
-        let mut robot =
-            LaserRobot::new(&world, &smoothed, scanner, &self.sensing, driver, facing, observer);
-        if robot.begin(towards) == Err(ScanFailure::Stopped) {
-            robot.end(RunEnding::Stopped);
-            return None;
-        }
-        let (mapping, mapped) = method.map_world(&mut robot, dart_bound, &[], &mut ());
-        let (moves, recoveries, outcome) = match mapped {
-            Err(MappingError::World(ScanFailure::Stopped)) => {
-                robot.end(RunEnding::Stopped);
-                return None;
-            }
-            Err(error) => {
-                robot.end(RunEnding::GaveUp(error.to_string()));
-                (mapping.moves(), 0, RobotOutcome::GaveUp(error.to_string()))
-            }
+        let RunStart { world, smoothed, facing, pose, drift } = self.start(number)?;
+        let seed = self.run_seed(number);
+        let scanner = self.scanner(&world, number, seed);
+        let marker = smoothed.corridors[facing.at()];
+        let robot = CorridorRobot::new(&world, scanner, pose, drift, marker, seed);
+        let mut judge = PerceptJudge::new(&world, &smoothed);
+        let mut explorer =
+            CorridorExplorer::new(robot, &self.sensing, (&mut judge, &mut *observer));
+        let settings = Self::run_settings(&smoothed.graph, method);
+        let (mapping, mapped) = explorer.map(&settings);
+        let way = explorer.way();
+        let (moves, recoveries) = mapped
+            .as_ref()
+            .map_or((mapping.moves(), 0), |mapped| (mapped.moves, mapped.recoveries));
+        let outcome = match mapped {
+            Err(MappingError::World(ExplorerError::Stopped { .. })) => return None,
+            Err(error) => RobotOutcome::GaveUp(error.to_string()),
             Ok(mapped) => {
-                robot.end(RunEnding::Mapped);
                 // A robot at no junction is not at its pose in the map.
-                let truly = robot.truth().unwrap_or(Dart(u32::MAX));
-                let outcome = match mapping.map().complete() {
+                let truly = judge.truth.unwrap_or(Dart(u32::MAX));
+                match mapping.map().complete() {
                     None => RobotOutcome::GaveUp("the map is not complete".to_owned()),
                     Some(map) => {
                         let graph = Cow::Borrowed(map);
@@ -146,12 +148,10 @@ impl WalkSampler {
                             Err(flaw) => RobotOutcome::Wrong(flaw.to_string()),
                         }
                     }
-                };
-                (mapped.moves, mapped.recoveries, outcome)
+                }
             }
         };
-        let (way, tally) = (robot.driver.way, robot.tally);
-        Some(ScannedRun { number, moves, way, recoveries, tally, outcome })
+        Some(ScannedRun { number, moves, way, recoveries, tally: judge.tally, outcome })
     }
 }
 

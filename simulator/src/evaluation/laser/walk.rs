@@ -1,9 +1,6 @@
 //! A random walk through a random building, and where the robot is on it.
 
-use std::{
-    f64::consts::{PI, TAU},
-    ops::Range,
-};
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Point2, Rotation2, Vector2, center};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
@@ -63,16 +60,16 @@ const BACK: f64 = 0.08;
 
 /// Drives from point to point, and takes scans on its way.
 #[derive(Clone, Debug)]
-pub(super) struct WalkDriver {
-    pub(super) steps: Vec<WalkStep>,
+struct WalkDriver {
+    steps: Vec<WalkStep>,
     /// Where it is, or will be after its last step, and the length of its way, in metres.
-    pub(super) at: Point2<f64>,
-    pub(super) way: f64,
+    at: Point2<f64>,
+    way: f64,
     /// The direction of the last leg.
-    pub(super) heading: Option<f64>,
+    heading: Option<f64>,
     /// Of the heading of the odometry, in radians a metre.
     drift: f64,
-    pub(super) chance: Xoshiro256PlusPlus,
+    chance: Xoshiro256PlusPlus,
 }
 
 impl LaserWalk {
@@ -117,54 +114,20 @@ impl LaserWalk {
 }
 
 impl WalkDriver {
-    pub(super) fn new(drift: f64, seed: u64) -> Self {
+    fn new(drift: f64, seed: u64) -> Self {
         let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);
         let drift = drift * chance.random_range(-1.0..=1.0);
         Self { steps: Vec::new(), at: Point2::origin(), way: 0.0, heading: None, drift, chance }
     }
 
-    /// Stays where it is after this number of steps. Those after them are not made.
-    pub(super) fn stop_after(&mut self, steps: usize) {
-        self.steps.truncate(steps);
-        if let Some(step) = self.steps.last() {
-            (self.at, self.way) = (step.pose.position.into(), step.way);
-            self.heading = Some(step.pose.heading);
-        }
-    }
-
-    /// Where it was before it entered a circle the last time, without the steps in these ranges; `None` if it was never
-    /// inside or outside.
-    pub(super) fn before_entering(
-        &self,
-        centre: Point2<f64>,
-        radius: f64,
-        without: &[Range<usize>],
-    ) -> Option<Point2<f64>> {
-        let is_outside = |place: &Point2<f64>| distance(*place, centre) >= radius;
-        self.places_without(without).skip_while(is_outside).find(is_outside)
-    }
-
-    /// Where it was last, without the steps in these ranges.
-    pub(super) fn last_without(&self, without: &[Range<usize>]) -> Option<Point2<f64>> {
-        self.places_without(without).next()
-    }
-
-    /// Where it was, from the last step to the first, without those in these ranges.
-    fn places_without(&self, without: &[Range<usize>]) -> impl Iterator<Item = Point2<f64>> {
-        let counts =
-            |&(number, _): &(usize, _)| !without.iter().any(|range| range.contains(&number));
-        let steps = self.steps.iter().enumerate().rev().filter(counts);
-        steps.map(|(_, step)| step.pose.position.into())
-    }
-
     /// Drives to a place, nearly.
-    pub(super) fn drive_near(&mut self, place: Point2<f64>) {
+    fn drive_near(&mut self, place: Point2<f64>) {
         let place = place.map(|part| part + OFF * self.chance.random_range(-1.0..=1.0));
         self.drive_to(place);
     }
 
     /// Turns, and drives to a point.
-    pub(super) fn drive_to(&mut self, point: Point2<f64>) {
+    fn drive_to(&mut self, point: Point2<f64>) {
         let from = self.at;
         let length = distance(from, point);
         if length < 1e-6 {
@@ -196,16 +159,6 @@ impl WalkDriver {
         }
         self.way += length;
         self.at = point;
-    }
-
-    /// Turns around once where it is.
-    pub(super) fn look_around(&mut self) {
-        let Some(heading) = self.heading else { return };
-        let turns = (TAU / TURN).ceil();
-        for part in 1..=turns as u32 {
-            let heading = wrapped(heading + TAU * f64::from(part) / turns);
-            self.push(Pose { position: self.at.into(), heading }, self.way);
-        }
     }
 
     /// Adds a step, with odometry that drifts.

@@ -6,7 +6,7 @@ use toposlam_vision::params;
 
 params! {
     /// How the robot decides where it stands, and when it looks again.
-    LaserRobotParams {
+    CorridorParams {
         /// A place is left when the robot is this far from its walls.
         left_behind: f64 = 2.5,
         /// The robot has come in by the direction of where it was when it was this far from the junction's walls.
@@ -53,6 +53,38 @@ params! {
         tries: usize = 6,
         /// The marker is seen from up to this far from its place, besides the clearance.
         marker_range: f64 = 2.0,
+        /// The marker is remembered for this length of the way.
+        marker_memory: f64 = 100.0,
+        /// The longest step from scan to scan.
+        step: f64 = 0.45,
+        /// It drives towards the point of its way that is this far ahead.
+        look_ahead: f64 = 0.9,
+        /// A smaller turn is made while it drives.
+        straight: f64 = 0.02,
+        /// A scanner that does not see all round takes a scan after each turn by this.
+        turn: f64 = 0.45,
+        /// A robot that turns around takes this number of scans if its scanner sees all round, ...
+        round_views: usize = 8,
+        /// ... and this number if it does not.
+        sector_views: usize = 20,
+        /// A way that leaves a place in a direction differs from it by less than this, ...
+        leaving: f64 = 0.6,
+        /// ... over this length.
+        leaving_measured: f64 = 2.5,
+        /// From step to step a way bends by less than this.
+        bend: f64 = 1.2,
+        /// A robot that cannot go straight on looks for a bend if it has driven this far, ...
+        bend_after: f64 = 3.0,
+        /// ... and its way behind the bend is measured over this length.
+        bend_length: f64 = 1.5,
+        /// A way that is known for less than this has ended.
+        at_end: f64 = 0.3,
+        /// A robot that stops before a wall is this far from it.
+        to_wall: f64 = 0.4,
+        /// A robot that has driven less than this in a step cannot go on.
+        stuck: f64 = 0.05,
+        /// A point is reached within this distance.
+        at_point: f64 = 0.12,
         /// The longest way of a run.
         longest_way: f64 = 30_000.0 => 0.0..=100_000.0,
     }

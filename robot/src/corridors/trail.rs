@@ -1,0 +1,95 @@
+//! Where a robot has been, by odometry. Points are those of its frame.
+
+use std::ops::Range;
+
+use nalgebra::Point2;
+use toposlam_vision::geometry::distance;
+
+/// Where a robot has taken its scans, in their order, and what of it was only to look at something.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Trail {
+    points: Vec<Point2<f64>>,
+    side_trips: Vec<Range<usize>>,
+}
+
+impl Trail {
+    pub(super) fn push(&mut self, point: Point2<f64>) {
+        self.points.push(point);
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// What was driven from a number on was only to look at something: the robot has come back.
+    pub(super) fn end_side_trip(&mut self, begin: usize) {
+        self.side_trips.push(begin..self.points.len());
+    }
+
+    /// The points from a number on, the last one first, at least this far apart.
+    pub(super) fn back_to(&self, begin: usize, apart: f64) -> Vec<Point2<f64>> {
+        let mut back: Vec<Point2<f64>> = Vec::new();
+        for &point in self.points.get(begin..).unwrap_or_default().iter().rev() {
+            if back.last().is_none_or(|last| distance(*last, point) >= apart) {
+                back.push(point);
+            }
+        }
+        back
+    }
+
+    /// The number of the point from a number on that is nearest to another point.
+    pub(super) fn nearest(&self, begin: usize, to: Point2<f64>) -> Option<usize> {
+        let off = |number: &usize| distance(self.points[*number], to);
+        let numbers = begin..self.points.len();
+        numbers.min_by(|one, other| off(one).total_cmp(&off(other)))
+    }
+
+    /// Where the robot was before it entered a circle the last time, without side trips; `None` if it was never inside, or
+    /// never outside.
+    pub(super) fn before_entering(&self, centre: Point2<f64>, radius: f64) -> Option<Point2<f64>> {
+        let is_outside = |point: &Point2<f64>| distance(*point, centre) >= radius;
+        self.without_side_trips().skip_while(is_outside).find(is_outside)
+    }
+
+    /// From the last point to the first, without side trips.
+    pub(super) fn without_side_trips(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
+        let is_aside = |number: usize| self.side_trips.iter().any(|trip| trip.contains(&number));
+        let points = self.points.iter().enumerate().rev();
+        points.filter(move |(number, _)| !is_aside(*number)).map(|(_, point)| *point)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A robot that drives 6 m to the east in steps of 1 m, from its third step on aside and back.
+    fn trail() -> Trail {
+        let mut trail = Trail::default();
+        let on = |x: i32| Point2::new(f64::from(x), 0.0);
+        (0..3).for_each(|x| trail.push(on(x)));
+        for aside in [1.0, 2.0, 1.0] {
+            trail.push(Point2::new(2.0, aside));
+        }
+        trail.end_side_trip(3);
+        (3..=6).for_each(|x| trail.push(on(x)));
+        trail
+    }
+
+    #[test]
+    fn where_a_robot_came_from_is_on_its_way_and_not_on_a_side_trip() {
+        let before = trail().before_entering(Point2::new(4.0, 0.0), 1.5);
+        // It has left the circle, and was in it before.
+        assert_eq!(before, Some(Point2::new(2.0, 0.0)));
+        assert_eq!(trail().before_entering(Point2::new(2.0, 5.0), 1.0), None);
+        assert_eq!(trail().without_side_trips().count(), 7);
+    }
+
+    #[test]
+    fn the_way_back_is_the_way_with_the_last_point_first() {
+        let trail = trail();
+        let back = trail.back_to(6, 1.5);
+        assert_eq!(back, [[6.0, 0.0], [4.0, 0.0]].map(Point2::from));
+        assert_eq!(trail.nearest(0, Point2::new(2.1, 1.8)), Some(4));
+    }
+}
