@@ -165,6 +165,8 @@ impl From<CorridorFailure> for Stop {
 }
 
 const ROBOT: CorridorParams = CorridorParams::DEFAULT;
+/// A robot that is stopped tries these directions to both sides of its way, in radians.
+const BESIDE: [f64; 3] = [0.35, 0.7, 1.05];
 
 impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     /// A robot in a corridor, which looks towards its first junction.
@@ -428,15 +430,29 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         let before = self.at();
         self.step_to(target)?;
         let driven = distance(before, self.at());
-        if driven < ROBOT.stuck {
+        if driven < ROBOT.stuck && !self.passes_beside(direction(before, target))? {
             return Ok(Some(way.clearance));
         }
-        self.heading = if distance(self.at(), beyond) > ROBOT.look_ahead / 2.0 {
+        self.heading = if driven < ROBOT.stuck {
+            direction(before, target)
+        } else if distance(self.at(), beyond) > ROBOT.look_ahead / 2.0 {
             direction(self.at(), beyond)
         } else {
             direction(before, self.at())
         };
         Ok(None)
+    }
+
+    /// Whether a robot that is stopped where its map shows nothing, as by glass, passes a little beside it.
+    fn passes_beside(&mut self, ahead: f64) -> Result<bool, Stop> {
+        for aside in BESIDE.into_iter().flat_map(|aside| [aside, -aside]) {
+            let before = self.at();
+            self.step_to(before + ROBOT.look_ahead * unit(ahead + aside))?;
+            if distance(before, self.at()) >= ROBOT.step / 2.0 {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Turns to a point, goes up to a step towards it, and takes a scan.

@@ -50,7 +50,7 @@ const HEADING_NOISE: f64 = 0.002;
 /// metres.
 const RADIUS: f64 = 0.25;
 const STEP: f64 = 0.05;
-/// The marker lies this far from the walls of its junction, and is seen up to this far from them, in metres.
+/// The marker lies this far from the walls of its junction, and is seen from up to this far behind its middle, in metres.
 const MARKER: f64 = 0.4;
 const MARKER_SEEN: f64 = 2.0;
 /// The time to take a scan, in seconds.
@@ -76,7 +76,7 @@ impl CorridorRobot {
             pose,
             reading: TimedOdometry { time: 0.0, odometry: Odometry { position, heading } },
             drift,
-            marker: (place + (clearance + MARKER) * unit(along), along, MARKER_SEEN + MARKER),
+            marker: (place + (clearance + MARKER) * unit(along), along, clearance + MARKER_SEEN),
             scans: 0,
             track: Vec::new(),
             chance: Xoshiro256PlusPlus::seed_from_u64(seed),

@@ -214,11 +214,11 @@ mod tests {
     /// In this run what the robot derives contradicts itself.
     #[test]
     fn a_robot_that_recovers_ends_right_after_percepts_that_are_wrong() {
-        let sampler = sampler(BuildingKind::Diagonal, 4);
-        let without = sampler.run(3, folding(), &()).unwrap();
+        let sampler = sampler(BuildingKind::Long, 4);
+        let without = sampler.run(11, folding(), &()).unwrap();
         assert!(matches!(without.outcome, RobotOutcome::GaveUp(_)), "{without:?}");
         let recovering = MappingMethod::Recovering(RecoveryConfig::default());
-        let with = sampler.run(3, recovering, &()).unwrap();
+        let with = sampler.run(11, recovering, &()).unwrap();
         assert_eq!(with.outcome, RobotOutcome::Right, "{with:?}");
         assert!(with.recoveries > 0, "{with:?}");
     }
