@@ -5,6 +5,8 @@ use std::{env, time::Duration};
 
 use clap::ValueEnum;
 #[cfg(any(feature = "ros1", feature = "ros2"))]
+use toposlam_logs::record::RunObserver;
+#[cfg(any(feature = "ros1", feature = "ros2"))]
 use toposlam_robot::{
     live::{LiveRobot, LiveSensor, RobotTopics, ServedRobot},
     robot::RobotError,
@@ -33,6 +35,9 @@ pub(super) struct RosOptions {
     /// With --ros2: use the network, not only this machine
     #[arg(long, requires = "ros2")]
     network: bool,
+    /// With --ros2: stamp commands by the topic /clock, as with the parameter use_sim_time
+    #[arg(long, requires = "ros2")]
+    sim_time: bool,
     /// With --ros2: the type of the commands to the wheels, Twist or TwistStamped [default: what the robot reads; the
     /// simulated robot reads Twist]
     #[arg(
@@ -43,6 +48,20 @@ pub(super) struct RosOptions {
         hide_possible_values = true
     )]
     cmd_vel_type: Option<CommandType>,
+    /// With --ros2: let the tools of this distribution list the node, as in `ros2 node list`: humble, iron, jazzy, kilted or
+    /// rolling [default: topics only]
+    #[arg(long, value_name = "NAME", requires = "ros2", hide_possible_values = true)]
+    ros_distro: Option<Distribution>,
+}
+
+/// A distribution of ROS 2.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Distribution {
+    Humble,
+    Iron,
+    Jazzy,
+    Kilted,
+    Rolling,
 }
 
 /// The type of the commands to the wheels.
@@ -79,7 +98,7 @@ impl RosOptions {
         if self.ros.is_some() { "--ros" } else { "--ros2" }
     }
 
-    /// The robot behind topics; `None` if the program is to stop before there is one.
+    /// The robot behind topics, and an observer that publishes its run; `None` if the program is to stop before there is one.
     ///
     /// # Errors
     /// Returns an error if there is no robot, or if this program does not speak its ROS.
@@ -90,14 +109,27 @@ impl RosOptions {
         sensor: LiveSensor,
         patience: Duration,
         stop: fn() -> bool,
-    ) -> Result<Option<LiveRobot>, CliError> {
+    ) -> Result<Option<(LiveRobot, Option<Box<dyn RunObserver>>)>, CliError> {
         let connected = match &self.ros {
             #[cfg(feature = "ros1")]
-            Some(master) => toposlam_robot::ros1::connect(master, topics, sensor, patience, stop),
+            Some(master) => toposlam_robot::ros1::connect(master, topics, sensor, patience, stop)
+                .map(|robot| (robot, None)),
             #[cfg(feature = "ros2")]
             None => {
-                let (domain, kind) = (self.ros2_domain()?, self.command_type());
-                toposlam_robot::ros2::connect(&domain, topics, sensor, kind, patience, stop)
+                let settings = toposlam_robot::ros2::DriveSettings {
+                    sensor,
+                    wheels_type: self.command_type(),
+                    sim_time: self.sim_time,
+                    patience,
+                    stop,
+                    abort: super::progress::request_stop,
+                };
+                let connected =
+                    toposlam_robot::ros2::connect(&self.ros2_domain()?, topics, &settings);
+                connected.map(|(robot, run)| {
+                    let run: Box<dyn RunObserver> = Box::new(run);
+                    (robot, Some(run))
+                })
             }
             #[cfg(not(all(feature = "ros1", feature = "ros2")))]
             _ => return Err(self.missing()),
@@ -136,8 +168,13 @@ impl RosOptions {
 
     #[cfg(feature = "ros2")]
     fn ros2_domain(&self) -> Result<toposlam_robot::ros2::RobotDomain, CliError> {
+        use toposlam_robot::ros2::{RobotDomain, RosDistro};
         let (namespace, network) = (self.namespace.clone(), self.network);
-        Ok(toposlam_robot::ros2::RobotDomain { number: domain()?, namespace, network })
+        let distro = self.ros_distro.map(|distribution| match distribution {
+            Distribution::Humble => RosDistro::Humble,
+            _ => RosDistro::IronOrLater,
+        });
+        Ok(RobotDomain { number: domain()?, namespace, network, distro })
     }
 
     #[cfg(feature = "ros2")]

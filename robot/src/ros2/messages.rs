@@ -19,7 +19,8 @@ use toposlam_vision::laser::scan::Scan;
 use crate::{
     live::messages::{
         Nanoseconds, RawBytes, Reckoning, ScanReading, Stamped, image_file, marker_message,
-        marker_view, odometry_message, reckoning, scan_reading, time, twist_of, wheel_speeds,
+        marker_view, nanoseconds, odometry_message, reckoning, scan_reading, time, twist_of,
+        wheel_speeds,
     },
     superscout::WheelSpeeds,
 };
@@ -36,7 +37,7 @@ const PADDING: usize = 4;
 
 /// The message of a body; `None` if it is too short or too long. A message of another type is either, or its numbers make no
 /// sense. No memory is allocated for a length that the body does not have.
-fn read<T: DeserializeOwned>(body: &EncodedBody) -> Option<T> {
+pub(super) fn read<T: DeserializeOwned>(body: &EncodedBody) -> Option<T> {
     let bytes = body.bytes.as_slice();
     let (message, read) = if body.encoding == RepresentationIdentifier::CDR_BE {
         cdr_encoding::from_bytes::<T, BigEndian>(bytes)
@@ -48,7 +49,7 @@ fn read<T: DeserializeOwned>(body: &EncodedBody) -> Option<T> {
 }
 
 /// The body of a message, with the lesser byte of a number first.
-fn write(message: &impl Serialize) -> Vec<u8> {
+pub(super) fn write(message: &impl Serialize) -> Vec<u8> {
     // Numbers, texts and lists of known length can always be written to memory.
     cdr_encoding::to_vec::<_, LittleEndian>(message).unwrap_or_default()
 }
@@ -131,6 +132,14 @@ pub(super) fn marker(stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
 /// The marker; `None` if it is no such message, or a number in it is not finite.
 pub(super) fn read_marker(body: &EncodedBody) -> Option<Stamped<MarkerView>> {
     marker_view(&read::<PoseStamped<RawBytes>>(body)?)
+}
+
+/// The topic of the time of a simulation.
+pub(super) const CLOCK: &str = "/clock";
+
+/// The time; `None` if it is no such message.
+pub(super) fn read_clock(body: &EncodedBody) -> Option<Nanoseconds> {
+    read::<ClockMessage>(body).map(|message| nanoseconds(message.clock))
 }
 
 pub(super) fn clock(stamp: Nanoseconds) -> Vec<u8> {

@@ -44,7 +44,9 @@ impl DriveArguments {
             wheels: self.topic("wheels"),
         };
         let place = self.ros.place()?;
-        let Some(robot) = self.ros.connect(&topics, live, self.patience, must_stop)? else {
+        let Some((robot, mut published)) =
+            self.ros.connect(&topics, live, self.patience, must_stop)?
+        else {
             return Ok(Outcome::Incomplete);
         };
         let command = self.given.command(&["toposlam", "drive"]);
@@ -53,13 +55,15 @@ impl DriveArguments {
             if self.options.json { None } else { Some(&mut *out) };
         let head = format!("A robot {place}.");
         let mut capture = RunCapture::new(head, story_out, frame_kind, None)?;
-        let mut explorer = RobotExplorer::new(robot, sensor, (&mut log, &mut capture));
+        let mut explorer =
+            RobotExplorer::new(robot, sensor, (&mut log, (&mut capture, published.as_deref_mut())));
         let (mapping, mapped) = explorer.map(&settings);
         let moves = explorer.moves();
         let (robot, _) = explorer.into_parts();
         let logged = self.options.close(log);
         let (seconds, frames) = (robot.odometry().time, robot.frames());
-        // The robot stops before anything else.
+        // The robot stops before anything else; its topics end before its node.
+        drop(published);
         drop(robot);
         capture.finish()?;
         logged?;
