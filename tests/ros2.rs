@@ -96,11 +96,17 @@ impl Stage {
             eprintln!("skipped: the Python package cyclonedds is not installed");
             return None;
         }
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2/peer.py");
-        let mut command = Command::new("python3");
-        command.arg(script).args([verb, what]).stdin(Stdio::null());
-        command.env("ROS_DOMAIN_ID", &self.domain).env("CYCLONEDDS_URI", CYCLONE);
+        let mut command = self.script("peer.py", &[verb, what]);
         Some(Process::start(command.stdout(fs::File::create(self.folder.join("peer")).unwrap())))
+    }
+
+    /// A script of Cyclone DDS.
+    fn script(&self, name: &str, arguments: &[&str]) -> Command {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2").join(name);
+        let mut command = Command::new("python3");
+        command.arg(script).args(arguments).stdin(Stdio::null());
+        command.env("ROS_DOMAIN_ID", &self.domain).env("CYCLONEDDS_URI", CYCLONE);
+        command
     }
 
     /// The lines of a file that begin with a word.
@@ -267,4 +273,99 @@ fn a_domain_is_a_number_that_has_ports() {
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains(&expected), "{}", stderr(&output));
     }
+}
+
+/// What `services.py` prints when it calls a service.
+fn call(stage: &Stage, service: &str) -> String {
+    let output = stage.script("services.py", &["call", service]).output().unwrap();
+    assert!(output.status.success(), "{service}: {}", stderr(&output));
+    stdout(&output)
+}
+
+/// Cyclone DDS lists the node in both forms, sees the run, and calls the services as its clients in ROS 2 do.
+#[test]
+fn others_see_a_run_pause_it_and_abort_it() {
+    for (distro, gid) in [("humble", "24"), ("jazzy", "16")] {
+        let stage = Stage::new(distro);
+        let Some(_odometry) = stage.peer("listen", &stage.path("received")) else { return };
+        let mut watch = stage.script("services.py", &["watch", &stage.path("seen")]);
+        let _watch = Process::start(watch.env("GID", gid));
+        let robot = stage.simulate(&[]);
+        let drive = stage.drive(&["--patience", "20", "--ros-distro", distro]);
+        let is_seen = |word: &str, part: &str| {
+            stage.lines("seen", word).iter().any(|line| line.contains(part))
+        };
+        until("the robot leaves", 60, || is_seen("/state 0", "by door 0 [moves=1 vertices=1"));
+        assert_eq!(call(&stage, "pause"), "True the wheels stand\n");
+        // The wheels brake.
+        sleep(Duration::from_millis(500));
+        let odometry = || stage.lines("received", "/odom").last().cloned();
+        let stood = odometry();
+        sleep(Duration::from_secs(1));
+        assert_eq!((odometry(), stood.is_some()), (stood, true));
+        assert_eq!(call(&stage, "pause"), "False the wheels stand already\n");
+        assert!(is_seen("/state 1", "paused; driving to the next junction by door 0"));
+        assert_eq!(call(&stage, "resume"), "True the run goes on\n");
+        assert_eq!(call(&stage, "resume"), "False the run is not paused\n");
+        until("the next junction is known", 60, || is_seen("/markers", "numbers:9:0:0:1"));
+        assert_eq!(call(&stage, "abort"), "True the run ends\n");
+        let output = drive.ends_within(30);
+        assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+        assert!(stage.end().contains("stopped\0"), "{}", stage.end());
+        until("the end is seen", 5, || is_seen("/state 0", ": run: stopped ["));
+        // Two vertices of degrees 2 and 3; the robot came in at the second.
+        assert!(is_seen("/map 1 ", "[2, 3] [2, -1, 0, -1, -1] 2"));
+        let markers = stage.lines("seen", "/markers");
+        let expected =
+            "['odom'] :7:3:0: vertices:7:0:2: edges:5:0:2: numbers:9:0:0:0 numbers:9:0:0:1";
+        assert!(markers.last().unwrap().contains(expected), "{markers:?}");
+        let nodes = stage.lines("seen", &format!("/nodes {gid} /:toposlam_"));
+        // Odometry, scans, two kinds of transforms, the marker and three services; wheels, state, map, markers and three
+        // services. The identity of each begins as that of its participant.
+        assert!(nodes.last().unwrap().ends_with(" 8 7 True"), "{nodes:?}");
+        drop(robot);
+    }
+}
+
+#[test]
+fn a_bumper_ends_a_run_and_a_low_battery_is_a_warning() {
+    let stage = Stage::new("bump");
+    let Some(_commands) = stage.peer("listen", &stage.path("received")) else { return };
+    let publish = |what| Process::start(&mut stage.script("services.py", &["publish", what]));
+    let watch = &mut stage.script("services.py", &["watch", &stage.path("seen")]);
+    let _watch = Process::start(watch);
+    let _battery = publish("battery");
+    let robot = stage.simulate(&[]);
+    let drive = stage.drive(&["--patience", "20"]);
+    let is_seen =
+        |word: &str, part: &str| stage.lines("seen", word).iter().any(|line| line.contains(part));
+    until("the robot leaves", 60, || is_seen("/state 1", "by door 0; the battery is low"));
+    assert!(is_seen("/state 1", "battery=8 %"));
+    // Without --ros-distro no tool is told of the node.
+    assert_eq!(stage.lines("seen", "/nodes").len(), 0);
+    let _bump = publish("bump");
+    let output = drive.ends_within(30);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let cause = "the robot reports on /hazard_detection that the bumper is pressed";
+    assert!(stage.end().contains(cause), "{}", stage.end());
+    until("the end is seen", 5, || is_seen("/state 2", cause));
+    let last = stage.lines("received", "/cmd_vel").pop();
+    assert_eq!(last.as_deref(), Some("/cmd_vel 0.0 0.0"));
+    drop(robot);
+}
+
+#[test]
+fn commands_have_the_time_of_the_simulation_if_it_is_asked_for() {
+    let stage = Stage::new("clock");
+    let Some(_robot) = stage.peer("read", "TwistStamped") else { return };
+    let output = stage.drive(&["--sim-time", "--patience", "1"]).ends_within(60);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("nobody publishes /clock"), "{}", stderr(&output));
+    let start = |verb, what| Process::start(&mut stage.script("services.py", &[verb, what]));
+    let _clock = start("publish", "clock");
+    let _stamps = start("stamps", &stage.path("stamps"));
+    let output = stage.drive(&["--sim-time", "--patience", "1"]).ends_within(60);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let stamps = stage.lines("stamps", "/cmd_vel");
+    assert!(!stamps.is_empty() && stamps.iter().all(|line| line == "/cmd_vel 77 5"), "{stamps:?}");
 }

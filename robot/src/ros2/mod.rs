@@ -27,7 +27,7 @@ use toposlam_logs::{
     recorder,
     standard::{
         ClockMessage, CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped,
-        TFMessage,
+        RawImage, TFMessage,
     },
 };
 use toposlam_model::driving::scene::MarkerView;
@@ -57,6 +57,9 @@ pub use messages::WheelsType;
 pub use node::RobotDomain;
 pub use run_topics::RunTopics;
 
+/// The types of images: files, and pixels.
+const IMAGES: [&str; 2] =
+    [<CompressedImage<FileBytes> as Message>::TYPE, <RawImage<FileBytes> as Message>::TYPE];
 /// Static transforms are sent to late nodes within this time.
 const TRANSFORMS: Duration = Duration::from_secs(6);
 
@@ -96,9 +99,11 @@ pub fn connect(
     let odometry = node.subscribe(&topics.odometry, odometry_type, messages::read_odometry)?;
     let sensor = match sensor {
         LiveSensor::Camera => {
-            let kind = <CompressedImage<FileBytes> as Message>::TYPE;
-            published(&topics.images, kind)?;
-            SensorTopics::Camera(node.subscribe(&topics.images, kind, messages::read_image)?)
+            let [file, raw] = IMAGES;
+            let kind =
+                node.type_of(&topics.images, OtherSide::Publishes, &[file, raw], FIRST, stop)?;
+            let read = if kind == raw { messages::read_raw_image } else { messages::read_image };
+            SensorTopics::Camera(node.subscribe(&topics.images, kind, read)?)
         }
         LiveSensor::Laser => {
             let kind = <LaserScanMessage<&[f32]> as Message>::TYPE;
@@ -155,7 +160,7 @@ fn serve(
     node.serve("/toposlam/pause", move || {
         let success = wheels_of.pause();
         state_of.change(|state| state.is_paused |= success);
-        let message = if success { "the wheels stand" } else { "the robot is not driving" };
+        let message = if success { "the wheels stand" } else { "the wheels stand already" };
         TriggerResponse { success, message }
     })?;
     let (wheels_of, state_of) = (wheels.clone(), state.clone());

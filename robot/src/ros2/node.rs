@@ -486,6 +486,49 @@ impl SerializerAdapter<Vec<u8>> for AsItIs {
 mod tests {
     use super::*;
 
+    /// A client as Fast DDS makes it: it says in the header of its request by which reader it reads replies, and takes those
+    /// that name this reader and the number of its request.
+    #[test]
+    fn a_client_that_says_who_it_is_in_the_header_gets_its_reply() {
+        let number = (100 + process::id() % 100) as u16;
+        let domain = RobotDomain { number, namespace: "robot1".to_owned(), ..Default::default() };
+        let (server, client) = (DdsNode::new(&domain).unwrap(), DdsNode::new(&domain).unwrap());
+        let mut calls = 0;
+        let answer = move || {
+            calls += 1;
+            TriggerResponse { success: calls == 1, message: "done" }
+        };
+        server.serve("/toposlam/abort", answer).unwrap();
+        let requests =
+            client.writer("rq/robot1/toposlam/abortRequest".to_owned(), REQUEST, passing());
+        let requests = requests.unwrap();
+        let replies =
+            client.reader("rr/robot1/toposlam/abortReply".to_owned(), RESPONSE, passing());
+        let mut replies = replies.unwrap();
+        let until = Instant::now() + Duration::from_secs(20);
+        let is_known = |name: &str, side| !client.endpoints(name, side).is_empty();
+        while !is_known("rq/robot1/toposlam/abortRequest", OtherSide::Reads)
+            || !is_known("rr/robot1/toposlam/abortReply", OtherSide::Publishes)
+        {
+            assert!(Instant::now() < until, "no service");
+            sleep(LOOK);
+        }
+        let writer_guid = replies.guid();
+        let me = SampleIdentity { writer_guid, sequence_number: Default::default() };
+        let options = WriteOptionsBuilder::new().related_sample_identity(me).build();
+        let asked = requests.writer.write_with_options(vec![0; 4], options).unwrap();
+        let reply = loop {
+            assert!(Instant::now() < until, "no reply");
+            match replies.take_next_sample().unwrap() {
+                Some(reply) => break reply,
+                None => sleep(LOOK),
+            }
+        };
+        let related = reply.sample_info().related_sample_identity().unwrap();
+        assert_eq!(related, SampleIdentity { writer_guid, ..asked });
+        assert!(reply.value().bytes.starts_with(b"\x01\0\0\0\x05\0\0\0done\0"));
+    }
+
     #[test]
     fn types_have_the_names_of_ros_2() {
         let (ros, dds) =
