@@ -369,3 +369,26 @@ fn commands_have_the_time_of_the_simulation_if_it_is_asked_for() {
     let stamps = stage.lines("stamps", "/cmd_vel");
     assert!(!stamps.is_empty() && stamps.iter().all(|line| line == "/cmd_vel 77 5"), "{stamps:?}");
 }
+
+/// The launch file makes commands that this program takes. Its domain has no ports, so none finds a robot.
+#[test]
+fn the_options_of_each_robot_in_the_package_are_options_of_this_program() {
+    let stage = Stage::new("package");
+    let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("ros2");
+    let printed = stage.script("package.py", &[&package.display().to_string()]).output().unwrap();
+    if stderr(&printed) == "no yaml\n" {
+        assert_ne!(env::var("TOPOSLAM_ROS").as_deref(), Ok("required"));
+        eprintln!("skipped: the Python package yaml is not installed");
+        return;
+    }
+    let commands = stdout(&printed);
+    assert_eq!(commands.lines().count(), 3, "{commands}{}", stderr(&printed));
+    for line in commands.lines() {
+        let words: Vec<String> = serde_json::from_str(line).unwrap();
+        let words: Vec<_> = words[1..].iter().map(String::as_str).collect();
+        let output = stage.toposlam(&words).env("ROS_DOMAIN_ID", "233").output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        let expected = "ROS_DOMAIN_ID: expected a number from 0 to 232, found 233";
+        assert!(stderr(&output).contains(expected), "{line}: {}", stderr(&output));
+    }
+}

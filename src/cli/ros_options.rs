@@ -35,9 +35,6 @@ pub(super) struct RosOptions {
     /// With --ros2: use the network, not only this machine
     #[arg(long, requires = "ros2")]
     network: bool,
-    /// With --ros2: stamp commands by the topic /clock, as with the parameter use_sim_time
-    #[arg(long, requires = "ros2")]
-    sim_time: bool,
     /// With --ros2: the type of the commands to the wheels, Twist or TwistStamped [default: what the robot reads; the
     /// simulated robot reads Twist]
     #[arg(
@@ -77,6 +74,10 @@ enum CommandType {
 #[cfg(any(feature = "ros1", feature = "ros2"))]
 const MOST_DOMAINS: u16 = 232;
 
+/// A robot behind topics, and what publishes its run: in ROS 1, nothing does.
+#[cfg(any(feature = "ros1", feature = "ros2"))]
+type ConnectedRobot = (LiveRobot, Box<dyn RunObserver>);
+
 impl RosOptions {
     pub(super) fn is_given(&self) -> bool {
         self.ros2 || self.ros.is_some()
@@ -103,33 +104,32 @@ impl RosOptions {
     /// # Errors
     /// Returns an error if there is no robot, or if this program does not speak its ROS.
     #[cfg(any(feature = "ros1", feature = "ros2"))]
+    #[cfg_attr(not(feature = "ros2"), expect(unused_variables, reason = "ROS 1 has no such time"))]
     pub(super) fn connect(
         &self,
         topics: &RobotTopics,
         sensor: LiveSensor,
+        sim_time: bool,
         patience: Duration,
         stop: fn() -> bool,
-    ) -> Result<Option<(LiveRobot, Option<Box<dyn RunObserver>>)>, CliError> {
+    ) -> Result<Option<ConnectedRobot>, CliError> {
         let connected = match &self.ros {
             #[cfg(feature = "ros1")]
             Some(master) => toposlam_robot::ros1::connect(master, topics, sensor, patience, stop)
-                .map(|robot| (robot, None)),
+                .map(|robot| (robot, Box::new(()) as _)),
             #[cfg(feature = "ros2")]
             None => {
                 let settings = toposlam_robot::ros2::DriveSettings {
                     sensor,
                     wheels_type: self.command_type(),
-                    sim_time: self.sim_time,
+                    sim_time,
                     patience,
                     stop,
                     abort: super::progress::request_stop,
                 };
                 let connected =
                     toposlam_robot::ros2::connect(&self.ros2_domain()?, topics, &settings);
-                connected.map(|(robot, run)| {
-                    let run: Box<dyn RunObserver> = Box::new(run);
-                    (robot, Some(run))
-                })
+                connected.map(|(robot, run)| (robot, Box::new(run) as _))
             }
             #[cfg(not(all(feature = "ros1", feature = "ros2")))]
             _ => return Err(self.missing()),

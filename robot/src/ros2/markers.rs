@@ -79,7 +79,7 @@ pub(super) fn markers(map: &MapRecord, visits: &[VisitedPlace]) -> Vec<u8> {
     let places = positions(map, &darts, visits);
     let place = |[x, y]: [f64; 2], z| Vector3 { x, y, z };
     let mut shown = vec![Marker { action: DELETE_ALL, ..Marker::new("", 0, SPHERES, 0.0, GREY) }];
-    let seen = || places.iter().enumerate().filter_map(|(number, at)| Some((number, (*at)?)));
+    let seen = || (0_i32..).zip(&places).filter_map(|(number, at)| Some((number, (*at)?)));
     let mut spheres = Marker::new("vertices", 0, SPHERES, 0.3, BLUE);
     spheres.points.extend(seen().map(|(_, at)| place(at, 0.0)));
     let mut lines = Marker::new("edges", 0, LINES, 0.05, GREY);
@@ -93,7 +93,7 @@ pub(super) fn markers(map: &MapRecord, visits: &[VisitedPlace]) -> Vec<u8> {
     // RViz reports a marker without points as faulty.
     shown.extend([spheres, lines].into_iter().filter(|marker| !marker.points.is_empty()));
     shown.extend(seen().map(|(number, at)| {
-        let mut text = Marker::new("numbers", number as i32, TEXT, 0.3, WHITE);
+        let mut text = Marker::new("numbers", number, TEXT, 0.3, WHITE);
         text.pose.position = place(at, 0.4);
         text.text = number.to_string();
         text

@@ -514,7 +514,7 @@ mod tests {
             sleep(LOOK);
         }
         let writer_guid = replies.guid();
-        let me = SampleIdentity { writer_guid, sequence_number: Default::default() };
+        let me = SampleIdentity { writer_guid, ..SampleIdentity::default() };
         let options = WriteOptionsBuilder::new().related_sample_identity(me).build();
         let asked = requests.writer.write_with_options(vec![0; 4], options).unwrap();
         let reply = loop {

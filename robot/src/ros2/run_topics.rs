@@ -84,3 +84,40 @@ impl RunObserver for RunTopics {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_logs::{
+        decode::decode,
+        definition::{Definition, Dialect},
+        message::schema,
+    };
+    use toposlam_model::embedded_graph::Dart;
+
+    use super::*;
+
+    /// The definition is the one that `ros2/toposlam_msgs` installs.
+    #[test]
+    fn a_map_is_published_as_its_definition_says() {
+        let map = MapRecord {
+            moves: 3,
+            degrees: vec![2, 1],
+            opposite: vec![Some(Dart(2)), None, Some(Dart(0))],
+            robot: Dart(2),
+        };
+        let stamp = Stamp { sec: 5, nanosec: 6 };
+        let body = write(&map_message(stamp, &map));
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../ros2/toposlam_msgs/msg/Map.msg");
+        let text = schema(&std::fs::read_to_string(folder).unwrap());
+        let definition = Definition::read(Dialect::Ros2, "toposlam_msgs/Map", &text).unwrap();
+        let encoded = [&[0, 1, 0, 0], body.as_slice()].concat();
+        let message = decode(&definition, &encoded).unwrap();
+        let field = |name| message.at(name).unwrap();
+        let list = |name| -> Vec<_> {
+            field(name).elements().unwrap().iter().map(|number| number.i64().unwrap()).collect()
+        };
+        assert_eq!(field("stamp").stamp(), Some(stamp));
+        assert_eq!((field("move").u64(), field("robot").u64()), (Some(3), Some(2)));
+        assert_eq!((list("degrees"), list("opposite")), (vec![2, 1], vec![2, -1, 0]));
+    }
+}

@@ -45,7 +45,7 @@ impl DriveArguments {
         };
         let place = self.ros.place()?;
         let Some((robot, mut published)) =
-            self.ros.connect(&topics, live, self.patience, must_stop)?
+            self.ros.connect(&topics, live, self.sim_time, self.patience, must_stop)?
         else {
             return Ok(Outcome::Incomplete);
         };
@@ -56,7 +56,7 @@ impl DriveArguments {
         let head = format!("A robot {place}.");
         let mut capture = RunCapture::new(head, story_out, frame_kind, None)?;
         let mut explorer =
-            RobotExplorer::new(robot, sensor, (&mut log, (&mut capture, published.as_deref_mut())));
+            RobotExplorer::new(robot, sensor, (&mut log, (&mut capture, &mut *published)));
         let (mapping, mapped) = explorer.map(&settings);
         let moves = explorer.moves();
         let (robot, _) = explorer.into_parts();
