@@ -308,6 +308,8 @@ fn others_see_a_run_pause_it_and_abort_it() {
         assert_eq!(call(&stage, "resume"), "True the run goes on\n");
         assert_eq!(call(&stage, "resume"), "False the run is not paused\n");
         until("the next junction is known", 60, || is_seen("/markers", "numbers:9:0:0:1"));
+        // A run that waits ends, too.
+        assert_eq!(call(&stage, "pause"), "True the wheels stand\n");
         assert_eq!(call(&stage, "abort"), "True the run ends\n");
         let output = drive.ends_within(30);
         assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));

@@ -102,6 +102,7 @@ pub(crate) fn odometry_message(Reckoning { stamp, at, wheels }: &Reckoning) -> O
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SentImage {
     File(Vec<u8>),
+    #[cfg_attr(not(feature = "ros2"), expect(dead_code, reason = "in ROS 1, only files are read"))]
     Pixels(RgbImage),
 }
 

@@ -26,8 +26,8 @@ enum SafetyReading {
     Clear,
     /// The robot must not go on.
     Hazard(&'static str),
-    /// The part of its charge that a battery has.
-    Battery(f32),
+    /// The part of its charge that a battery has, in hundredths.
+    Battery(u8),
 }
 
 /// A topic of a robot, and how it is read; `None` for a message that is not of this type.
@@ -143,10 +143,10 @@ struct BatteryState {
 
 fn read_battery(body: &EncodedBody) -> Option<SafetyReading> {
     let charge = read::<BatteryState>(body)?.percentage;
-    // A part of 1; some drivers send a part of 100.
-    let charge = if charge > 1.0 { charge / 100.0 } else { charge };
-    let is_known = (0.0..=1.0).contains(&charge);
-    Some(if is_known { SafetyReading::Battery(charge) } else { SafetyReading::Clear })
+    // A part of 1; some drivers send hundredths.
+    let charge = if charge > 1.0 { charge } else { charge * 100.0 };
+    let is_known = (0.0..=100.0).contains(&charge);
+    Some(if is_known { SafetyReading::Battery(charge.round() as u8) } else { SafetyReading::Clear })
 }
 
 /// Interval of looks for topics, and of the state.
@@ -274,8 +274,8 @@ mod tests {
             let texts = ("", "42");
             reading("BatteryState", (HEADER, numbers, [2_u8, 1, 2], true, cells, texts))
         };
-        assert_eq!(battery(0.5), Some(SafetyReading::Battery(0.5)));
-        assert_eq!(battery(50.0), Some(SafetyReading::Battery(0.5)));
+        assert_eq!(battery(0.5), Some(SafetyReading::Battery(50)));
+        assert_eq!(battery(50.0), Some(SafetyReading::Battery(50)));
         for unknown in [f32::NAN, -1.0, 1e9] {
             assert_eq!(battery(unknown), Some(SafetyReading::Clear));
         }

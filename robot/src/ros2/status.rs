@@ -18,8 +18,8 @@ use crate::{live::messages::time, robot::RobotError};
 pub(super) const STATE: &str = "/toposlam/state";
 pub(super) const STATE_TYPE: &str = "diagnostic_msgs/msg/DiagnosticArray";
 
-/// Below this part of its charge, a battery is low.
-const LOW_BATTERY: f32 = 0.15;
+/// Below this part of its charge, a battery is low; in hundredths.
+const LOW_BATTERY: u8 = 15;
 
 /// How good a state is, as in `diagnostic_msgs/msg/DiagnosticStatus`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,8 +41,8 @@ pub(super) struct RunState {
     pub(super) edges: usize,
     /// The number of darts that are not explored.
     pub(super) unexplored: usize,
-    /// The part of its charge that a battery has.
-    pub(super) battery: Option<f32>,
+    /// The part of its charge that a battery has, in hundredths.
+    pub(super) battery: Option<u8>,
 }
 
 impl RunState {
@@ -71,6 +71,7 @@ impl RunState {
     }
 
     pub(super) fn hazard(&mut self, hazard: &RobotError) {
+        self.is_paused = false;
         (self.activity, self.has_failed) = (format!("stopped: {hazard}"), true);
     }
 
@@ -104,8 +105,7 @@ impl RunState {
             number("unexplored", self.unexplored),
         ];
         if let Some(charge) = self.battery {
-            let value = format!("{:.0} %", charge * 100.0);
-            values.push(NamedValue { key: "battery", value });
+            values.push(NamedValue { key: "battery", value: format!("{charge} %") });
         }
         values
     }
@@ -181,13 +181,13 @@ mod tests {
     fn a_low_battery_is_a_warning_and_a_failed_run_an_error() {
         let mut state = RunState::new();
         assert_eq!(state.level(), Level::Ok);
-        state.battery = Some(0.1);
+        state.battery = Some(10);
         assert_eq!(state.level(), Level::Warn);
         assert_eq!(state.message(), "looking for the first junction; the battery is low");
         state.end(&RunEnd { moves: 3, ending: RunEnding::GaveUp("lost".to_owned()) });
         assert_eq!((state.level(), state.moves), (Level::Error, 3));
         state.end(&RunEnd { moves: 3, ending: RunEnding::Mapped });
-        state.battery = Some(0.5);
+        state.battery = Some(50);
         assert_eq!(state.level(), Level::Ok);
     }
 
