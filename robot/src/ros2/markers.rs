@@ -177,31 +177,38 @@ impl Marker {
 mod tests {
     use super::*;
 
-    /// A ring of three junctions; the robot went round once, and came in at vertex 0 by its dart 0.
-    fn ring() -> (MapRecord, Vec<VisitedPlace>) {
-        let opposite = [5, 2, 1, 4, 3, 0].map(|dart| Some(Dart(dart))).to_vec();
-        let map = MapRecord { moves: 3, degrees: vec![2; 3], opposite, robot: Dart(0) };
-        let visit = |door, x| VisitedPlace { door, degree: 2, position: [x, 0.0] };
-        let door = Some(Door(1));
-        (map, vec![visit(None, 0.0), visit(door, 1.0), visit(door, 2.0), visit(door, 3.0)])
+    /// A junction of three hallways, vertex 0, and their ends. The robot started at the end of the first one, went to that of
+    /// the second, and then to that of the third.
+    fn star() -> (MapRecord, Vec<VisitedPlace>) {
+        let opposite = [3, 4, 5, 0, 1, 2].map(|dart| Some(Dart(dart))).to_vec();
+        let map = MapRecord { moves: 4, degrees: vec![3, 1, 1, 1], opposite, robot: Dart(5) };
+        let visit = |door: Option<u32>, degree, x| VisitedPlace {
+            door: door.map(Door),
+            degree,
+            position: [x, 0.0],
+        };
+        let end = |x| visit(Some(1), 1, x);
+        let junction = |x| visit(Some(0), 3, x);
+        (map, vec![visit(None, 1, 0.0), junction(1.0), end(2.0), junction(3.0), end(4.0)])
     }
 
     #[test]
     fn a_vertex_is_where_the_robot_was_at_its_last_visit() {
-        let (map, visits) = ring();
+        let (map, visits) = star();
         let darts = VertexDarts::new(&map);
-        let expected = [Some([3.0, 0.0]), Some([1.0, 0.0]), Some([2.0, 0.0])];
+        let expected = [3.0, 0.0, 2.0, 4.0].map(|x| Some([x, 0.0]));
         assert_eq!(positions(&map, &darts, &visits), expected);
     }
 
     #[test]
     fn visits_that_do_not_agree_with_the_map_are_left_out() {
-        let (map, mut visits) = ring();
+        let (map, mut visits) = star();
         let darts = VertexDarts::new(&map);
-        visits[2].degree = 3;
-        assert_eq!(positions(&map, &darts, &visits), [Some([3.0, 0.0]), None, None]);
+        visits[2].degree = 2;
+        let expected = [Some([3.0, 0.0]), None, None, Some([4.0, 0.0])];
+        assert_eq!(positions(&map, &darts, &visits), expected);
         let lost = MapRecord { robot: Dart(99), ..map };
-        assert_eq!(positions(&lost, &darts, &visits), [None; 3]);
+        assert_eq!(positions(&lost, &darts, &visits), [None; 4]);
         assert!(!markers(&lost, &visits).is_empty());
     }
 }
