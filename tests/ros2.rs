@@ -7,6 +7,7 @@
 #![cfg(all(feature = "ros2", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod camera_files;
 #[allow(dead_code, reason = "other programs use the rest")]
 mod output;
 mod process;
@@ -393,4 +394,21 @@ fn the_options_of_each_robot_in_the_package_are_options_of_this_program() {
         let expected = "ROS_DOMAIN_ID: expected a number from 0 to 232, found 233";
         assert!(stderr(&output).contains(expected), "{line}: {}", stderr(&output));
     }
+}
+
+/// These images have another size than those of the calibrated camera.
+#[test]
+fn a_camera_may_publish_pixels() {
+    let stage = Stage::new("pixels");
+    let Some(_robot) = stage.peer("read", "Twist") else { return };
+    camera_files::write_camera_files(&stage.folder);
+    let _images = Process::start(&mut stage.script("services.py", &["publish", "pixels"]));
+    let paths = ["camera.toml", "colours.toml", "run.mcap"].map(|name| stage.path(name));
+    let [camera, colours, log] = paths.each_ref().map(String::as_str);
+    let files = ["--calibration", camera, "--colours", colours, "--log", log];
+    let drive = ["drive", "--ros2", "--topic", "images=/camera/pixels"];
+    let output = stage.toposlam(&[&drive[..], &files].concat()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}{}", stdout(&output), stderr(&output));
+    let cause = "the image has 160 x 120 pixels; those of the calibrated camera have 640 x 480";
+    assert!(stage.end().contains(cause), "{}", stage.end());
 }

@@ -3,7 +3,8 @@
     services.py watch FILE       write each message of /toposlam/state, /toposlam/map, /toposlam/markers, and each list of nodes
     services.py call NAME        call a service of the type Trigger, and print its response
     services.py stamps FILE      write the stamp of each TwistStamped of /cmd_vel as a line
-    services.py publish WHAT     publish /hazard_detection with a bump, /battery_state that is low, or a /clock
+    services.py publish WHAT     publish /hazard_detection with a bump, /battery_state that is low, a /clock,
+                                 or grey pixels on /camera/pixels
 """
 
 import os
@@ -113,6 +114,17 @@ class ColorRGBA(IdlStruct, typename="std_msgs::msg::dds_::ColorRGBA_"):
 class CompressedImage(IdlStruct, typename="sensor_msgs::msg::dds_::CompressedImage_"):
     header: Header
     format: str
+    data: sequence[uint8]
+
+
+@dataclass
+class Image(IdlStruct, typename="sensor_msgs::msg::dds_::Image_"):
+    header: Header
+    height: uint32
+    width: uint32
+    encoding: str
+    is_bigendian: uint8
+    step: uint32
     data: sequence[uint8]
 
 
@@ -319,10 +331,14 @@ def publish(what):
         "bump": ("rt/hazard_detection", bump),
         "battery": ("rt/battery_state", battery),
         "clock": ("rt/clock", Clock(Time(77, 5))),
+        "pixels": ("rt/camera/pixels", Image(header(), 120, 160, "mono8", 0, 164, [128] * (164 * 120))),
     }
     name, message = topics[what]
     out = writer(name, type(message))
     while True:
+        if what == "pixels":
+            now = time.time_ns()
+            message.header.stamp = Time(now // 10**9, now % 10**9)
         out.write(message)
         time.sleep(0.05)
 
