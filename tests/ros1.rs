@@ -7,6 +7,7 @@
 #![cfg(all(feature = "ros1", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod camera_files;
 #[allow(dead_code, reason = "other programs use the rest")]
 mod output;
 mod process;
@@ -103,7 +104,7 @@ impl Stage {
         let listener = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros1/listener.py");
         let listener = ros(PYTHON, &[listener.as_ref(), path("received").as_ref()]);
         if sensor == "camera" {
-            see(&folder);
+            camera_files::write_camera_files(&folder);
         }
         let [camera, colours] = [path("camera.toml"), path("colours.toml")];
         let simulate = ["simulate", "worlds/shape-6.toml", "--seed", "3", "--ros", &address];
@@ -192,30 +193,6 @@ impl Stage {
             assert!(speed.abs() <= 0.2 + 1e-9 && turning.abs() <= 0.3491, "{speed} {turning}");
         }
     }
-}
-
-/// The camera, and the colours of the building as they are learned from a few labelled images.
-fn see(folder: &Path) {
-    let run = |line: &str| {
-        let words: Vec<_> = line.split(' ').collect();
-        let status = toposlam(&words).current_dir(folder).status().unwrap();
-        assert!(status.success(), "{line}");
-    };
-    for inside in ["images", "labels"] {
-        fs::create_dir(folder.join(inside)).unwrap();
-    }
-    let camera = toposlam_vision::camera::Camera::superscout().sized([640, 480]);
-    let camera = toposlam_vision::camera::calibration::to_toml(&camera);
-    fs::write(folder.join("camera.toml"), camera).unwrap();
-    let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/shape-8.toml");
-    for n in 1..=7 {
-        let pose = format!("--pose 0,{n},{} --seed {n} --size 640x480", 50 * n);
-        let files = format!("--out images/{n}.png --labels labels/{n}.png");
-        run(&format!("draw {plan} --marker directional {pose} {files}"));
-    }
-    run(
-        "camera train --images images --labels labels --calibration camera.toml --out colours.toml",
-    );
 }
 
 #[test]

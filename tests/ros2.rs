@@ -7,6 +7,7 @@
 #![cfg(all(feature = "ros2", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod camera_files;
 #[allow(dead_code, reason = "other programs use the rest")]
 mod output;
 mod process;
@@ -96,11 +97,17 @@ impl Stage {
             eprintln!("skipped: the Python package cyclonedds is not installed");
             return None;
         }
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2/peer.py");
-        let mut command = Command::new("python3");
-        command.arg(script).args([verb, what]).stdin(Stdio::null());
-        command.env("ROS_DOMAIN_ID", &self.domain).env("CYCLONEDDS_URI", CYCLONE);
+        let mut command = self.script("peer.py", &[verb, what]);
         Some(Process::start(command.stdout(fs::File::create(self.folder.join("peer")).unwrap())))
+    }
+
+    /// A script of Cyclone DDS.
+    fn script(&self, name: &str, arguments: &[&str]) -> Command {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2").join(name);
+        let mut command = Command::new("python3");
+        command.arg(script).args(arguments).stdin(Stdio::null());
+        command.env("ROS_DOMAIN_ID", &self.domain).env("CYCLONEDDS_URI", CYCLONE);
+        command
     }
 
     /// The lines of a file that begin with a word.
@@ -267,4 +274,141 @@ fn a_domain_is_a_number_that_has_ports() {
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains(&expected), "{}", stderr(&output));
     }
+}
+
+/// What `services.py` prints when it calls a service.
+fn call(stage: &Stage, service: &str) -> String {
+    let output = stage.script("services.py", &["call", service]).output().unwrap();
+    assert!(output.status.success(), "{service}: {}", stderr(&output));
+    stdout(&output)
+}
+
+/// Cyclone DDS lists the node in both forms, sees the run, and calls the services as its clients in ROS 2 do.
+#[test]
+fn others_see_a_run_pause_it_and_abort_it() {
+    for (distro, gid) in [("humble", "24"), ("jazzy", "16")] {
+        let stage = Stage::new(distro);
+        let Some(_odometry) = stage.peer("listen", &stage.path("received")) else { return };
+        let mut watch = stage.script("services.py", &["watch", &stage.path("seen")]);
+        let _watch = Process::start(watch.env("GID", gid));
+        let robot = stage.simulate(&[]);
+        let drive = stage.drive(&["--patience", "20", "--ros-distro", distro]);
+        let is_seen = |word: &str, part: &str| {
+            stage.lines("seen", word).iter().any(|line| line.contains(part))
+        };
+        until("the robot leaves", 60, || is_seen("/state 0", "by door 0 [moves=1 vertices=1"));
+        assert_eq!(call(&stage, "pause"), "True the wheels stand\n");
+        // The wheels brake.
+        sleep(Duration::from_millis(500));
+        let odometry = || stage.lines("received", "/odom").last().cloned();
+        let stood = odometry();
+        sleep(Duration::from_secs(1));
+        assert_eq!((odometry(), stood.is_some()), (stood, true));
+        assert_eq!(call(&stage, "pause"), "False the wheels stand already\n");
+        assert!(is_seen("/state 1", "paused; driving to the next junction by door 0"));
+        assert_eq!(call(&stage, "resume"), "True the run goes on\n");
+        assert_eq!(call(&stage, "resume"), "False the run is not paused\n");
+        until("the next junction is known", 60, || is_seen("/markers", "numbers:9:0:0:1"));
+        // A run that waits ends, too.
+        assert_eq!(call(&stage, "pause"), "True the wheels stand\n");
+        assert_eq!(call(&stage, "abort"), "True the run ends\n");
+        let output = drive.ends_within(30);
+        assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+        assert!(stage.end().contains("stopped\0"), "{}", stage.end());
+        until("the end is seen", 5, || is_seen("/state 0", ": run: stopped ["));
+        // Two vertices of degrees 2 and 3; the robot came in at the second.
+        assert!(is_seen("/map 1 ", "[2, 3] [2, -1, 0, -1, -1] 2"));
+        let markers = stage.lines("seen", "/markers");
+        let expected =
+            "['odom'] :7:3:0: vertices:7:0:2: edges:5:0:2: numbers:9:0:0:0 numbers:9:0:0:1";
+        assert!(markers.last().unwrap().contains(expected), "{markers:?}");
+        let nodes = stage.lines("seen", &format!("/nodes {gid} /:toposlam_"));
+        // Odometry, scans, two kinds of transforms, the marker and three services; wheels, state, map, markers and three
+        // services. The identity of each begins as that of its participant.
+        assert!(nodes.last().unwrap().ends_with(" 8 7 True"), "{nodes:?}");
+        drop(robot);
+    }
+}
+
+#[test]
+fn a_bumper_ends_a_run_and_a_low_battery_is_a_warning() {
+    let stage = Stage::new("bump");
+    let Some(_commands) = stage.peer("listen", &stage.path("received")) else { return };
+    let publish = |what| Process::start(&mut stage.script("services.py", &["publish", what]));
+    let watch = &mut stage.script("services.py", &["watch", &stage.path("seen")]);
+    let _watch = Process::start(watch);
+    let _battery = publish("battery");
+    let robot = stage.simulate(&[]);
+    let drive = stage.drive(&["--patience", "20"]);
+    let is_seen =
+        |word: &str, part: &str| stage.lines("seen", word).iter().any(|line| line.contains(part));
+    until("the robot leaves", 60, || is_seen("/state 1", "by door 0; the battery is low"));
+    assert!(is_seen("/state 1", "battery=8 %"));
+    // Without --ros-distro no tool is told of the node.
+    assert_eq!(stage.lines("seen", "/nodes").len(), 0);
+    let _bump = publish("bump");
+    let output = drive.ends_within(30);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let cause = "the robot reports on /hazard_detection that the bumper is pressed";
+    assert!(stage.end().contains(cause), "{}", stage.end());
+    until("the end is seen", 5, || is_seen("/state 2", cause));
+    let last = stage.lines("received", "/cmd_vel").pop();
+    assert_eq!(last.as_deref(), Some("/cmd_vel 0.0 0.0"));
+    drop(robot);
+}
+
+#[test]
+fn commands_have_the_time_of_the_simulation_if_it_is_asked_for() {
+    let stage = Stage::new("clock");
+    let Some(_robot) = stage.peer("read", "TwistStamped") else { return };
+    let output = stage.drive(&["--sim-time", "--patience", "1"]).ends_within(60);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("nobody publishes /clock"), "{}", stderr(&output));
+    let start = |verb, what| Process::start(&mut stage.script("services.py", &[verb, what]));
+    let _clock = start("publish", "clock");
+    let _stamps = start("stamps", &stage.path("stamps"));
+    let output = stage.drive(&["--sim-time", "--patience", "1"]).ends_within(60);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let stamps = stage.lines("stamps", "/cmd_vel");
+    assert!(!stamps.is_empty() && stamps.iter().all(|line| line == "/cmd_vel 77 5"), "{stamps:?}");
+}
+
+/// The launch file makes commands that this program takes. Its domain has no ports, so none finds a robot.
+#[test]
+fn the_options_of_each_robot_in_the_package_are_options_of_this_program() {
+    let stage = Stage::new("package");
+    let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("ros2");
+    let printed = stage.script("package.py", &[&package.display().to_string()]).output().unwrap();
+    if stderr(&printed) == "no yaml\n" {
+        assert_ne!(env::var("TOPOSLAM_ROS").as_deref(), Ok("required"));
+        eprintln!("skipped: the Python package yaml is not installed");
+        return;
+    }
+    let commands = stdout(&printed);
+    assert_eq!(commands.lines().count(), 3, "{commands}{}", stderr(&printed));
+    for line in commands.lines() {
+        let words: Vec<String> = serde_json::from_str(line).unwrap();
+        let words: Vec<_> = words[1..].iter().map(String::as_str).collect();
+        let output = stage.toposlam(&words).env("ROS_DOMAIN_ID", "233").output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        let expected = "ROS_DOMAIN_ID: expected a number from 0 to 232, found 233";
+        assert!(stderr(&output).contains(expected), "{line}: {}", stderr(&output));
+    }
+}
+
+/// These images have another size than those of the calibrated camera.
+#[test]
+fn a_camera_may_publish_pixels() {
+    let stage = Stage::new("pixels");
+    let Some(_robot) = stage.peer("read", "Twist") else { return };
+    camera_files::write_camera_files(&stage.folder);
+    let _images = Process::start(&mut stage.script("services.py", &["publish", "pixels"]));
+    let paths = ["camera.toml", "colours.toml", "run.mcap"].map(|name| stage.path(name));
+    let [camera, colours, log] = paths.each_ref().map(String::as_str);
+    let files = ["--calibration", camera, "--colours", colours, "--log", log];
+    let drive = ["drive", "--ros2", "--topic", "images=/camera/pixels"];
+    let output = stage.toposlam(&[&drive[..], &files].concat()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}{}", stdout(&output), stderr(&output));
+    let cause = "the image has 160 x 120 pixels; those of the calibrated camera have 640 x 480";
+    assert!(stage.end().contains(cause), "{}", stage.end());
 }

@@ -241,7 +241,7 @@ pub(super) fn hypothesis(stamp: Stamp, moves: u64, event: MappingEvent) -> Optio
     })
 }
 
-pub(super) fn map(stamp: Stamp, map: &MapRecord) -> Map {
+pub fn map(stamp: Stamp, map: &MapRecord) -> Map {
     let MapRecord { moves, degrees, opposite, robot } = map;
     let opposite = opposite.iter().map(|dart| dart.map_or(NONE, |Dart(far)| number(far)));
     Map {

@@ -28,6 +28,7 @@ macro_rules! messages {
 
 messages! {
     CompressedImage<FileBytes<'_>>: "sensor_msgs" "CompressedImage";
+    RawImage<FileBytes<'_>>: "sensor_msgs" "Image";
     LaserScanMessage<&[f32]>: "sensor_msgs" "LaserScan";
     Twist: "geometry_msgs" "Twist";
     TwistStamped: "geometry_msgs" "TwistStamped";
@@ -71,6 +72,18 @@ impl<'a> CompressedImage<FileBytes<'a>> {
         let header = Header { stamp: taken, frame_id: CAMERA };
         Self { header, format, data: FileBytes(data) }
     }
+}
+
+/// An image as pixels, row by row; a row takes `step` bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RawImage<D, T = &'static str> {
+    pub header: Header<T>,
+    pub height: u32,
+    pub width: u32,
+    pub encoding: T,
+    pub is_bigendian: u8,
+    pub step: u32,
+    pub data: D,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -71,6 +71,8 @@ pub enum RobotError {
     Silent { topic: String, seconds: f64, unread: u64 },
     #[error("the connection to {topic} is closed")]
     Closed { topic: String },
+    #[error("the robot reports on {topic} that {what}")]
+    Hazard { topic: &'static str, what: &'static str },
     /// All images were taken before the robot stood still, this one `behind` seconds before.
     #[error("the last image is {behind:.3} s older than the end of the last motion")]
     StaleImage { behind: f64 },

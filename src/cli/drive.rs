@@ -85,11 +85,14 @@ pub(super) struct DriveArguments {
     options: RunOptions,
     #[command(flatten)]
     ros: RosOptions,
+    /// With --ros2: stamp commands by the topic /clock, as with the parameter use_sim_time
+    #[arg(long, help_heading = "ROS", requires = "ros2")]
+    sim_time: bool,
 }
 
 /// What each topic carries, its usual name and its type.
 const TOPICS: [(&str, &str, &str); 5] = [
-    ("images", IMAGE, "sensor_msgs/CompressedImage"),
+    ("images", IMAGE, "sensor_msgs/CompressedImage, in ROS 2 also Image"),
     ("scans", SCAN, "sensor_msgs/LaserScan, with --sensor laser"),
     ("marker", MARKER, "geometry_msgs/PoseStamped, with --sensor laser"),
     ("odometry", ODOM, "nav_msgs/Odometry, by the clock of the images"),
@@ -128,7 +131,11 @@ fn notes() -> String {
 }
 
 const NOTES: &str =
-    "The run is not checked while the robot drives. Check its log with toposlam conform.
+    "With --ros2 the run publishes /toposlam/map, /toposlam/markers and /toposlam/state, and
+the services /toposlam/pause, resume and abort (std_srvs/Trigger) make the robot wait, go on
+or stop. A bumper or a cliff sensor of a known type ends the run.
+
+The run is not checked while the robot drives. Check its log with toposlam conform.
 
 This command needs a build with ROS: cargo build --release --features ros2
 (or ros1, or both).

@@ -5,6 +5,8 @@ use std::{env, time::Duration};
 
 use clap::ValueEnum;
 #[cfg(any(feature = "ros1", feature = "ros2"))]
+use toposlam_logs::record::RunObserver;
+#[cfg(any(feature = "ros1", feature = "ros2"))]
 use toposlam_robot::{
     live::{LiveRobot, LiveSensor, RobotTopics, ServedRobot},
     robot::RobotError,
@@ -43,6 +45,20 @@ pub(super) struct RosOptions {
         hide_possible_values = true
     )]
     cmd_vel_type: Option<CommandType>,
+    /// With --ros2: let the tools of this distribution list the node, as in `ros2 node list`: humble, iron, jazzy, kilted or
+    /// rolling [default: topics only]
+    #[arg(long, value_name = "NAME", requires = "ros2", hide_possible_values = true)]
+    ros_distro: Option<Distribution>,
+}
+
+/// A distribution of ROS 2.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Distribution {
+    Humble,
+    Iron,
+    Jazzy,
+    Kilted,
+    Rolling,
 }
 
 /// The type of the commands to the wheels.
@@ -57,6 +73,10 @@ enum CommandType {
 /// The largest number of a domain: the ports of others are those of other programs.
 #[cfg(any(feature = "ros1", feature = "ros2"))]
 const MOST_DOMAINS: u16 = 232;
+
+/// A robot behind topics, and what publishes its run: in ROS 1, nothing does.
+#[cfg(any(feature = "ros1", feature = "ros2"))]
+type ConnectedRobot = (LiveRobot, Box<dyn RunObserver>);
 
 impl RosOptions {
     pub(super) fn is_given(&self) -> bool {
@@ -79,25 +99,37 @@ impl RosOptions {
         if self.ros.is_some() { "--ros" } else { "--ros2" }
     }
 
-    /// The robot behind topics; `None` if the program is to stop before there is one.
+    /// The robot behind topics, and an observer that publishes its run; `None` if the program is to stop before there is one.
     ///
     /// # Errors
     /// Returns an error if there is no robot, or if this program does not speak its ROS.
     #[cfg(any(feature = "ros1", feature = "ros2"))]
+    #[cfg_attr(not(feature = "ros2"), expect(unused_variables, reason = "ROS 1 has no such time"))]
     pub(super) fn connect(
         &self,
         topics: &RobotTopics,
         sensor: LiveSensor,
+        sim_time: bool,
         patience: Duration,
         stop: fn() -> bool,
-    ) -> Result<Option<LiveRobot>, CliError> {
+    ) -> Result<Option<ConnectedRobot>, CliError> {
         let connected = match &self.ros {
             #[cfg(feature = "ros1")]
-            Some(master) => toposlam_robot::ros1::connect(master, topics, sensor, patience, stop),
+            Some(master) => toposlam_robot::ros1::connect(master, topics, sensor, patience, stop)
+                .map(|robot| (robot, Box::new(()) as _)),
             #[cfg(feature = "ros2")]
             None => {
-                let (domain, kind) = (self.ros2_domain()?, self.command_type());
-                toposlam_robot::ros2::connect(&domain, topics, sensor, kind, patience, stop)
+                let settings = toposlam_robot::ros2::DriveSettings {
+                    sensor,
+                    wheels_type: self.command_type(),
+                    sim_time,
+                    patience,
+                    stop,
+                    abort: super::progress::request_stop,
+                };
+                let connected =
+                    toposlam_robot::ros2::connect(&self.ros2_domain()?, topics, &settings);
+                connected.map(|(robot, run)| (robot, Box::new(run) as _))
             }
             #[cfg(not(all(feature = "ros1", feature = "ros2")))]
             _ => return Err(self.missing()),
@@ -136,8 +168,13 @@ impl RosOptions {
 
     #[cfg(feature = "ros2")]
     fn ros2_domain(&self) -> Result<toposlam_robot::ros2::RobotDomain, CliError> {
+        use toposlam_robot::ros2::{RobotDomain, RosDistro};
         let (namespace, network) = (self.namespace.clone(), self.network);
-        Ok(toposlam_robot::ros2::RobotDomain { number: domain()?, namespace, network })
+        let distro = self.ros_distro.map(|distribution| match distribution {
+            Distribution::Humble => RosDistro::Humble,
+            _ => RosDistro::IronOrLater,
+        });
+        Ok(RobotDomain { number: domain()?, namespace, network, distro })
     }
 
     #[cfg(feature = "ros2")]

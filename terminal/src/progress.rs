@@ -46,6 +46,11 @@ pub fn must_stop() -> bool {
     interrupted || report_output::is_useless()
 }
 
+/// Lets the work stop, as after Ctrl-C.
+pub fn request_stop() {
+    STOP.store(true, Ordering::Relaxed);
+}
+
 /// From now on a second Ctrl-C, too, waits for the work to stop: otherwise a robot would be left on its way.
 pub fn always_stop_gracefully() {
     ALWAYS_GRACEFUL.store(true, Ordering::Relaxed);

@@ -3,12 +3,16 @@
 //! RawBytes from outside are not trusted: a body that is too short or too long is rejected, and no memory is allocated for a
 //! length that the body does not have.
 
-use std::fmt;
+use std::{fmt, io::Cursor};
 
+use image::{ImageFormat, RgbImage};
 use serde::{Deserialize, Deserializer, de::Visitor};
+#[cfg(feature = "ros2")]
+use toposlam_logs::standard::RawImage;
 use toposlam_logs::{
     Mount,
     messages::Stamp,
+    record::CameraImage,
     standard::{
         BASE, CompressedImage, Header, LaserScanMessage, OdometryMessage, PoseMessage, PoseStamped,
         Twist,
@@ -94,9 +98,62 @@ pub(crate) fn odometry_message(Reckoning { stamp, at, wheels }: &Reckoning) -> O
     OdometryMessage::new(time(*stamp), at, twist_of(*wheels))
 }
 
+/// An image as a camera's driver sends it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum SentImage {
+    File(Vec<u8>),
+    #[cfg_attr(not(feature = "ros2"), expect(dead_code, reason = "in ROS 1, only files are read"))]
+    Pixels(RgbImage),
+}
+
+impl SentImage {
+    /// The image as a file, which is what a log holds. Pixels become one without loss; `None` if that fails.
+    pub(crate) fn file(self) -> Option<CameraImage> {
+        match self {
+            Self::File(file) => Some(CameraImage::encoded(file)),
+            Self::Pixels(pixels) => {
+                let mut file = Cursor::new(Vec::new());
+                pixels.write_to(&mut file, ImageFormat::Png).ok()?;
+                Some(CameraImage::encoded(file.into_inner()))
+            }
+        }
+    }
+}
+
 /// The file of an image.
-pub(crate) fn image_file(message: CompressedImage<RawBytes, RawBytes>) -> Stamped<Vec<u8>> {
-    Stamped { stamp: nanoseconds(message.header.stamp), content: message.data.0 }
+pub(crate) fn image_file(message: CompressedImage<RawBytes, RawBytes>) -> Stamped<SentImage> {
+    let content = SentImage::File(message.data.0);
+    Stamped { stamp: nanoseconds(message.header.stamp), content }
+}
+
+/// The pixels of an image; `None` if it has too few, or another encoding than `rgb8`, `bgr8` and `mono8`.
+#[cfg(feature = "ros2")]
+pub(crate) fn image_pixels(message: &RawImage<RawBytes, RawBytes>) -> Option<Stamped<SentImage>> {
+    let encoding = message.encoding.text();
+    let channels = match encoding.as_str() {
+        "rgb8" | "bgr8" => 3,
+        "mono8" => 1,
+        _ => return None,
+    };
+    let [width, height, step] =
+        [message.width, message.height, message.step].map(|number| number as usize);
+    let row = width.checked_mul(channels).filter(|&row| 0 < row && row <= step)?;
+    // No memory is allocated before it is known that the pixels are there.
+    let rows = message.data.0.chunks(step).take(height);
+    if rows.len() != height || rows.clone().any(|bytes| bytes.len() < row) {
+        return None;
+    }
+    let mut rgb = Vec::with_capacity(3 * width * height);
+    for pixel in rows.flat_map(|bytes| bytes[..row].chunks(channels)) {
+        match *pixel {
+            [red, green, blue] if encoding == "rgb8" => rgb.extend([red, green, blue]),
+            [blue, green, red] => rgb.extend([red, green, blue]),
+            _ => rgb.extend([pixel[0]; 3]),
+        }
+    }
+    let pixels = RgbImage::from_raw(message.width, message.height, rgb)?;
+    let content = SentImage::Pixels(pixels);
+    Some(Stamped { stamp: nanoseconds(message.header.stamp), content })
 }
 
 pub(crate) fn scan_reading(message: LaserScanMessage<Vec<f32>, RawBytes>) -> Stamped<ScanReading> {

@@ -2,16 +2,13 @@
 
 use std::{any::Any, sync::Arc, time::Duration};
 
-use toposlam_logs::{
-    Mount,
-    record::{CameraImage, Frame},
-};
+use toposlam_logs::{Mount, record::Frame};
 use toposlam_model::driving::scene::MarkerView;
 
 use super::{
     FIRST, Wheels,
     base::LiveBase,
-    messages::{Nanoseconds, Reckoning, ScanReading, Stamped},
+    messages::{Nanoseconds, Reckoning, ScanReading, SentImage, Stamped},
     topic::Subscription,
 };
 use crate::{
@@ -45,7 +42,7 @@ pub enum LiveSensor {
 }
 
 pub(crate) enum SensorTopics {
-    Camera(Subscription<Stamped<Vec<u8>>>),
+    Camera(Subscription<Stamped<SentImage>>),
     Laser {
         scans: Subscription<Stamped<ScanReading>>,
         /// Where the scanner is on the robot.
@@ -104,8 +101,8 @@ impl LiveRobot {
         let frame = match &self.sensor {
             SensorTopics::Camera(images) => {
                 images.wait(base.patience, base.stop, |Stamped { stamp, content }| {
-                    let image = Some(CameraImage::encoded(content));
-                    Some(Frame { image, ..is_fresh(stamp)? })
+                    let fresh = is_fresh(stamp)?;
+                    Some(Frame { image: Some(content.file()?), ..fresh })
                 })
             }
             SensorTopics::Laser { scans, mount, markers } => {

@@ -8,8 +8,9 @@ use toposlam_vision::laser::scan::Scan;
 
 use crate::{
     live::messages::{
-        Nanoseconds, RawBytes, Reckoning, ScanReading, Stamped, image_file, marker_message,
-        marker_view, odometry_message, reckoning, scan_reading, time, twist_of, wheel_speeds,
+        Nanoseconds, RawBytes, Reckoning, ScanReading, SentImage, Stamped, image_file,
+        marker_message, marker_view, odometry_message, reckoning, scan_reading, time, twist_of,
+        wheel_speeds,
     },
     superscout::WheelSpeeds,
 };
@@ -61,7 +62,7 @@ pub(super) fn image(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
 }
 
 /// An image; `None` if it is no such message.
-pub(super) fn read_image(bytes: &[u8]) -> Option<Stamped<Vec<u8>>> {
+pub(super) fn read_image(bytes: &[u8]) -> Option<Stamped<SentImage>> {
     let (_, message) = read::<Numbered<CompressedImage<RawBytes, RawBytes>>>(bytes)?;
     Some(image_file(message))
 }
@@ -113,9 +114,11 @@ mod tests {
         assert!((read.at.heading - 2.5).abs() < 1e-12, "{read:?}");
         let wheels = read_twist(&twist(reckoning().wheels)).unwrap();
         assert!((wheels.speed() - 0.1).abs() < 1e-12 && (wheels.turn_rate() - 0.2).abs() < 1e-12);
-        let taken = Stamped { stamp: 5, content: vec![0xff, 0xd8, 1] };
-        assert_eq!(read_image(&image(1, 5, &taken.content)), Some(taken));
-        let late = Stamped { stamp: u64::from(u32::MAX) * SECOND + 1, content: Vec::new() };
+        let file = vec![0xff, 0xd8, 1];
+        let taken = Stamped { stamp: 5, content: SentImage::File(file.clone()) };
+        assert_eq!(read_image(&image(1, 5, &file)), Some(taken));
+        let content = SentImage::File(Vec::new());
+        let late = Stamped { stamp: u64::from(u32::MAX) * SECOND + 1, content };
         assert_eq!(read_image(&image(1, late.stamp, &[])), Some(late));
         let geometry = ScanGeometry {
             angle_min: -0.5,

@@ -10,7 +10,7 @@ use toposlam_logs::{
     message::{Message, schema},
     standard::{
         BASE, ClockMessage, CompressedImage, Header, LaserScanMessage, OdometryMessage,
-        PoseStamped, TFMessage, Twist, TwistStamped,
+        PoseStamped, RawImage, TFMessage, Twist, TwistStamped,
     },
 };
 use toposlam_model::driving::scene::MarkerView;
@@ -18,8 +18,9 @@ use toposlam_vision::laser::scan::Scan;
 
 use crate::{
     live::messages::{
-        Nanoseconds, RawBytes, Reckoning, ScanReading, Stamped, image_file, marker_message,
-        marker_view, odometry_message, reckoning, scan_reading, time, twist_of, wheel_speeds,
+        Nanoseconds, RawBytes, Reckoning, ScanReading, SentImage, Stamped, image_file,
+        image_pixels, marker_message, marker_view, nanoseconds, odometry_message, reckoning,
+        scan_reading, time, twist_of, wheel_speeds,
     },
     superscout::WheelSpeeds,
 };
@@ -36,7 +37,7 @@ const PADDING: usize = 4;
 
 /// The message of a body; `None` if it is too short or too long. A message of another type is either, or its numbers make no
 /// sense. No memory is allocated for a length that the body does not have.
-fn read<T: DeserializeOwned>(body: &EncodedBody) -> Option<T> {
+pub(super) fn read<T: DeserializeOwned>(body: &EncodedBody) -> Option<T> {
     let bytes = body.bytes.as_slice();
     let (message, read) = if body.encoding == RepresentationIdentifier::CDR_BE {
         cdr_encoding::from_bytes::<T, BigEndian>(bytes)
@@ -48,7 +49,7 @@ fn read<T: DeserializeOwned>(body: &EncodedBody) -> Option<T> {
 }
 
 /// The body of a message, with the lesser byte of a number first.
-fn write(message: &impl Serialize) -> Vec<u8> {
+pub(super) fn write(message: &impl Serialize) -> Vec<u8> {
     // Numbers, texts and lists of known length can always be written to memory.
     cdr_encoding::to_vec::<_, LittleEndian>(message).unwrap_or_default()
 }
@@ -110,8 +111,13 @@ pub(super) fn image(stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
 }
 
 /// An image; `None` if it is no such message.
-pub(super) fn read_image(body: &EncodedBody) -> Option<Stamped<Vec<u8>>> {
+pub(super) fn read_image(body: &EncodedBody) -> Option<Stamped<SentImage>> {
     read::<CompressedImage<RawBytes, RawBytes>>(body).map(image_file)
+}
+
+/// An image as pixels; `None` if it is no such message, or has another encoding.
+pub(super) fn read_raw_image(body: &EncodedBody) -> Option<Stamped<SentImage>> {
+    image_pixels(&read::<RawImage<RawBytes, RawBytes>>(body)?)
 }
 
 pub(super) fn scan(stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
@@ -131,6 +137,14 @@ pub(super) fn marker(stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
 /// The marker; `None` if it is no such message, or a number in it is not finite.
 pub(super) fn read_marker(body: &EncodedBody) -> Option<Stamped<MarkerView>> {
     marker_view(&read::<PoseStamped<RawBytes>>(body)?)
+}
+
+/// The topic of the time of a simulation.
+pub(super) const CLOCK: &str = "/clock";
+
+/// The time; `None` if it is no such message.
+pub(super) fn read_clock(body: &EncodedBody) -> Option<Nanoseconds> {
+    read::<ClockMessage>(body).map(|message| nanoseconds(message.clock))
 }
 
 pub(super) fn clock(stamp: Nanoseconds) -> Vec<u8> {
@@ -162,6 +176,7 @@ impl FrameReader {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use toposlam_logs::standard::FileBytes;
     use toposlam_model::driving::odometry::Odometry;
     use toposlam_vision::laser::scan::ScanGeometry;
 
@@ -187,8 +202,9 @@ mod tests {
             assert!((wheels.speed() - 0.1).abs() < 1e-12, "{wheels:?}");
             assert!((wheels.turn_rate() - 0.2).abs() < 1e-12, "{wheels:?}");
         }
-        let taken = Stamped { stamp: 5, content: vec![0xff, 0xd8, 1] };
-        assert_eq!(read_image(&body(image(5, &taken.content))), Some(taken));
+        let file = vec![0xff, 0xd8, 1];
+        let taken = Stamped { stamp: 5, content: SentImage::File(file.clone()) };
+        assert_eq!(read_image(&body(image(5, &file))), Some(taken));
         let geometry = ScanGeometry {
             angle_min: -0.5,
             angle_increment: 0.25,
@@ -203,6 +219,40 @@ mod tests {
         let seen = MarkerView { position: [1.0, -0.5], axis: 0.75, door: None };
         let found = read_marker(&body(marker(8, &seen))).unwrap();
         assert!((found.content.axis - 0.75).abs() < 1e-12 && found.stamp == 8, "{found:?}");
+    }
+
+    /// Two rows of one pixel, with a byte after each row.
+    #[test]
+    fn pixels_are_read_in_any_order_of_colours_and_with_any_step() {
+        let raw = |encoding, step, data: &'static [u8]| {
+            let header = Header { stamp: time(4), frame_id: "camera" };
+            let data = FileBytes(data);
+            let (height, width, is_bigendian) = (2, 1, 0);
+            read_raw_image(&body(write(&RawImage {
+                header,
+                height,
+                width,
+                encoding,
+                is_bigendian,
+                step,
+                data,
+            })))
+        };
+        let expected = image::RgbImage::from_raw(1, 2, vec![1, 2, 3, 5, 6, 7]).unwrap();
+        let expected = Some(Stamped { stamp: 4, content: SentImage::Pixels(expected) });
+        assert_eq!(raw("rgb8", 4, &[1, 2, 3, 0, 5, 6, 7, 0]), expected);
+        assert_eq!(raw("bgr8", 4, &[3, 2, 1, 0, 7, 6, 5, 0]), expected);
+        assert_eq!(raw("rgb8", 3, &[1, 2, 3, 5, 6, 7]), expected);
+        let grey = image::RgbImage::from_raw(1, 2, vec![9, 9, 9, 8, 8, 8]).unwrap();
+        let grey = Some(Stamped { stamp: 4, content: SentImage::Pixels(grey) });
+        assert_eq!(raw("mono8", 2, &[9, 0, 8, 0]), grey);
+        let file = grey.and_then(|grey| grey.content.file()).unwrap();
+        assert_eq!(file.pixels().unwrap().get_pixel(0, 1).0, [8; 3]);
+        // Too few bytes, a row that is longer than its step, and an unknown encoding.
+        assert_eq!(raw("rgb8", 3, &[1, 2, 3, 5, 6]), None);
+        assert_eq!(raw("rgb8", 2, &[1, 2, 3, 5, 6, 7]), None);
+        assert_eq!(raw("rgb8", 0, &[]), None);
+        assert_eq!(raw("16UC1", 2, &[1, 2, 3, 4]), None);
     }
 
     /// Commands of the two types must not be taken for each other: the numbers of one would be garbage.
@@ -244,6 +294,7 @@ mod tests {
             let encoding =
                 if big { RepresentationIdentifier::CDR_BE } else { RepresentationIdentifier::CDR_LE };
             let body = EncodedBody { encoding, bytes };
+            let _ = (read_raw_image(&body), read_clock(&body));
             let _ = (read_odometry(&body), read_image(&body), read_scan(&body), read_marker(&body));
             let _ = WheelsType::ALL.map(|kind| kind.read(&body));
             let _ = FrameReader::new().add(&body, &mut FrameTree::default());

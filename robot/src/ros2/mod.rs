@@ -2,13 +2,23 @@
 //!
 //! Unless [`RobotDomain::network`] is set, only robots on this machine are found.
 
+mod graph;
+mod markers;
 mod messages;
 mod node;
+mod run_topics;
+mod safety;
+mod service;
+mod status;
+mod wheels;
 
 use std::{
-    sync::{Arc, Mutex, PoisonError},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
     thread::sleep,
-    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+    time::{Duration, Instant},
 };
 
 use toposlam_logs::{
@@ -17,20 +27,24 @@ use toposlam_logs::{
     recorder,
     standard::{
         ClockMessage, CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped,
-        TFMessage,
+        RawImage, TFMessage,
     },
 };
 use toposlam_model::driving::scene::MarkerView;
 use toposlam_vision::laser::scan::Scan;
 
 use self::{
-    messages::FrameReader,
+    messages::{CLOCK, FrameReader},
     node::{DdsNode, OtherSide, Writer},
+    safety::SafetyWatch,
+    service::TriggerResponse,
+    status::{PublishedState, STATE, STATE_TYPE},
+    wheels::{StampClock, Standstill, WheelsTopic},
 };
 use crate::{
     live::{
-        Connection, FIRST, LiveRobot, LiveSensor, Nanoseconds, Reckoning, RobotTopics, SECOND,
-        SensorTopics, ServedRobot, Wheels,
+        Connection, FIRST, LiveRobot, LiveSensor, Nanoseconds, Reckoning, RobotTopics,
+        SensorTopics, ServedRobot,
         messages::{ScanReading, Stamped},
         topic::Subscription,
     },
@@ -38,30 +52,45 @@ use crate::{
     superscout::WheelSpeeds,
 };
 
+pub use graph::RosDistro;
 pub use messages::WheelsType;
 pub use node::RobotDomain;
+pub use run_topics::RunTopics;
 
+/// The types of images: files, and pixels.
+const IMAGES: [&str; 2] =
+    [<CompressedImage<FileBytes> as Message>::TYPE, <RawImage<FileBytes> as Message>::TYPE];
 /// Static transforms are sent to late nodes within this time.
 const TRANSFORMS: Duration = Duration::from_secs(6);
-const CLOCK: &str = "/clock";
 
-/// The robot behind topics, as soon as odometry and an image, or a scan, have come. Transforms say where its scanner is.
-///
-/// The type of the commands to the wheels is the one that the robot reads, unless it is given. `patience` is the longest
-/// time without odometry, and without an image if one is expected. If `stop` returns true, the robot stops and does nothing
-/// more.
+/// How a robot is driven.
+#[derive(Clone, Copy, Debug)]
+pub struct DriveSettings {
+    pub sensor: LiveSensor,
+    /// The type of the commands to the wheels, unless it is the one that the robot reads.
+    pub wheels_type: Option<WheelsType>,
+    /// Whether commands have the time of `/clock`, and not that of the system.
+    pub sim_time: bool,
+    /// The longest time without odometry, and without an image if one is expected.
+    pub patience: Duration,
+    /// If it returns true, the robot stops and does nothing more.
+    pub stop: fn() -> bool,
+    /// Called when somebody aborts the run: from then on, `stop` returns true.
+    pub abort: fn(),
+}
+
+/// The robot behind topics, as soon as odometry and an image, or a scan, have come, and what publishes its run. Transforms say
+/// where its scanner is.
 ///
 /// # Errors
 /// Returns an error if there is no robot, if a topic has another type, or if the scanner's place is not known.
 pub fn connect(
     domain: &RobotDomain,
     topics: &RobotTopics,
-    sensor: LiveSensor,
-    wheels_type: Option<WheelsType>,
-    patience: Duration,
-    stop: fn() -> bool,
-) -> Result<LiveRobot, RobotError> {
-    let node = DdsNode::new(domain)?;
+    settings: &DriveSettings,
+) -> Result<(LiveRobot, RunTopics), RobotError> {
+    let DriveSettings { sensor, wheels_type, sim_time, patience, stop, abort } = *settings;
+    let node = Arc::new(DdsNode::new(domain)?);
     let published = |topic: &str, kind| {
         node.type_of(topic, OtherSide::Publishes, &[kind], FIRST, stop).map(drop)
     };
@@ -70,9 +99,11 @@ pub fn connect(
     let odometry = node.subscribe(&topics.odometry, odometry_type, messages::read_odometry)?;
     let sensor = match sensor {
         LiveSensor::Camera => {
-            let kind = <CompressedImage<FileBytes> as Message>::TYPE;
-            published(&topics.images, kind)?;
-            SensorTopics::Camera(node.subscribe(&topics.images, kind, messages::read_image)?)
+            let [file, raw] = IMAGES;
+            let kind =
+                node.type_of(&topics.images, OtherSide::Publishes, &[file, raw], FIRST, stop)?;
+            let read = if kind == raw { messages::read_raw_image } else { messages::read_image };
+            SensorTopics::Camera(node.subscribe(&topics.images, kind, read)?)
         }
         LiveSensor::Laser => {
             let kind = <LaserScanMessage<&[f32]> as Message>::TYPE;
@@ -84,14 +115,65 @@ pub fn connect(
             SensorTopics::Laser { scans, mount, markers }
         }
     };
+    let clock = if sim_time { simulated_clock(&node, stop)? } else { StampClock::System };
     let wheels_type = match wheels_type {
         Some(given) => given,
         None => wheels_type_of(&node, &topics.wheels, stop)?,
     };
     let writer = node.advertise(&topics.wheels, wheels_type.type_name())?;
-    let wheels = Box::new(WheelsTopic { wheels_type, writer });
-    let connection = Connection { wheels, odometry, sensor, node: Box::new(node) };
-    LiveRobot::new(connection, patience, stop)
+    let state = node.advertise_last(STATE, STATE_TYPE)?;
+    let state = Arc::new(PublishedState::new(state, clock.clone()));
+    let standstill = Standstill::default();
+    let wheels = Arc::new(WheelsTopic { wheels_type, writer, clock, stop, standstill });
+    let run = RunTopics::new(&node, state.clone())?;
+    serve(&node, &wheels, &state, abort)?;
+    let watch = SafetyWatch::new(node.clone(), wheels.clone(), state)?;
+    let wheels = Box::new(wheels);
+    // The thread ends before the node is dropped.
+    let connection = Connection { wheels, odometry, sensor, node: Box::new((watch, node)) };
+    Ok((LiveRobot::new(connection, patience, stop)?, run))
+}
+
+/// The time of `/clock`, as soon as there is one.
+fn simulated_clock(node: &DdsNode, stop: fn() -> bool) -> Result<StampClock, RobotError> {
+    let kind = <ClockMessage as Message>::TYPE;
+    node.type_of(CLOCK, OtherSide::Publishes, &[kind], FIRST, stop)?;
+    let last = Arc::new(AtomicU64::new(0));
+    let time = last.clone();
+    let began = node.subscribe(CLOCK, kind, move |body| {
+        let now = messages::read_clock(body)?;
+        time.store(now, Ordering::Relaxed);
+        Some(())
+    })?;
+    began.wait(FIRST, stop, Some)?;
+    Ok(StampClock::Simulated(last))
+}
+
+/// Answers the services by which others pause, resume and abort a run.
+fn serve(
+    node: &DdsNode,
+    wheels: &Arc<WheelsTopic>,
+    state: &Arc<PublishedState>,
+    abort: fn(),
+) -> Result<(), RobotError> {
+    let (wheels_of, state_of) = (wheels.clone(), state.clone());
+    node.serve("/toposlam/pause", move || {
+        let success = wheels_of.pause();
+        state_of.change(|state| state.is_paused |= success);
+        let message = if success { "the wheels stand" } else { "the wheels stand already" };
+        TriggerResponse { success, message }
+    })?;
+    let (wheels_of, state_of) = (wheels.clone(), state.clone());
+    node.serve("/toposlam/resume", move || {
+        let success = wheels_of.resume();
+        state_of.change(|state| state.is_paused &= !success);
+        let message = if success { "the run goes on" } else { "the run is not paused" };
+        TriggerResponse { success, message }
+    })?;
+    node.serve("/toposlam/abort", move || {
+        abort();
+        TriggerResponse { success: true, message: "the run ends" }
+    })
 }
 
 /// The type of the commands that the robot reads.
@@ -152,19 +234,6 @@ fn scanner_mount(
             }
             Ok(None) => sleep(Duration::from_millis(20)),
         }
-    }
-}
-
-struct WheelsTopic {
-    wheels_type: WheelsType,
-    writer: Writer,
-}
-
-impl Wheels for WheelsTopic {
-    fn command(&self, wheels: WheelSpeeds) -> Result<(), RobotError> {
-        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let stamp = now.as_secs() * SECOND + u64::from(now.subsec_nanos());
-        self.writer.publish(self.wheels_type.body(stamp, wheels))
     }
 }
 

@@ -8,6 +8,8 @@ use std::{
     collections::BTreeSet,
     convert::Infallible,
     net::{IpAddr, Ipv4Addr},
+    process,
+    sync::{Mutex, PoisonError},
     thread::sleep,
     time::{Duration, Instant},
 };
@@ -15,7 +17,8 @@ use std::{
 use futures::StreamExt;
 use rustdds::{
     DomainParticipant, DomainParticipantBuilder, Publisher, QosPolicies, QosPolicyBuilder,
-    RepresentationIdentifier, Subscriber, Topic, TopicKind,
+    RTPSEntity, RepresentationIdentifier, SampleIdentity, Subscriber, Topic, TopicKind,
+    WriteOptionsBuilder,
     bytes::Bytes,
     dds::qos::policy::{DataRepresentation, DataRepresentationId},
     no_key::{
@@ -25,7 +28,11 @@ use rustdds::{
 };
 use tokio::runtime::{Builder, Runtime};
 
-use super::messages::EncodedBody;
+use super::{
+    graph::{NODES, NODES_TYPE, NodeEndpoints, RosDistro},
+    messages::{CLOCK, EncodedBody},
+    service::{REQUEST, RESPONSE, TriggerRequest, TriggerResponse, caller},
+};
 use crate::{
     live::topic::{self, Subscription},
     robot::RobotError,
@@ -46,6 +53,20 @@ pub struct RobotDomain {
     pub namespace: String,
     /// Whether robots on the network are reached, and not only those on this machine.
     pub network: bool,
+    /// The distribution of the robot's ROS 2, if its tools are to list this node.
+    pub distro: Option<RosDistro>,
+}
+
+impl RobotDomain {
+    /// The namespace without its slashes.
+    fn space(&self) -> &str {
+        self.namespace.trim_matches('/')
+    }
+}
+
+/// The name of this program's node.
+pub(super) fn node_name() -> String {
+    format!("toposlam_{}", process::id())
 }
 
 pub(super) struct DdsNode {
@@ -53,8 +74,17 @@ pub(super) struct DdsNode {
     publisher: Publisher,
     subscriber: Subscriber,
     participant: DomainParticipant,
+    /// What the tools of ROS 2 list, if they do.
+    announced: Option<Announcement>,
     /// `None` once it is dropped.
     runtime: Option<Runtime>,
+}
+
+/// The endpoints of a node, and the topic that lists them.
+struct Announcement {
+    distro: RosDistro,
+    endpoints: Mutex<NodeEndpoints>,
+    writer: Writer,
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "it maps errors")]
@@ -68,12 +98,16 @@ fn best_effort() -> QosPolicies {
     builder.durability(Durability::Volatile).history(History::KeepLast { depth: DEPTH }).build()
 }
 
-/// What is written: it arrives. Late readers get the last message if it `stays`.
-fn reliable(stays: bool) -> QosPolicies {
+/// What is written: it arrives. Late readers get that many messages if they are [`Durability::TransientLocal`].
+fn reliable(durability: Durability, depth: i32) -> QosPolicies {
     let max_blocking_time = rustdds::Duration::from_millis(100);
-    let durability = if stays { Durability::TransientLocal } else { Durability::Volatile };
     let builder = QosPolicyBuilder::new().reliability(Reliability::Reliable { max_blocking_time });
-    builder.durability(durability).history(History::KeepLast { depth: DEPTH }).build()
+    builder.durability(durability).history(History::KeepLast { depth }).build()
+}
+
+/// What is written once: it arrives.
+fn passing() -> QosPolicies {
+    reliable(Durability::Volatile, DEPTH)
 }
 
 impl DdsNode {
@@ -85,36 +119,91 @@ impl DdsNode {
             builder.with_only_networks([IpAddr::V4(Ipv4Addr::LOCALHOST)])
         };
         let participant = builder.build().map_err(no_dds)?;
-        let publisher = participant.create_publisher(&reliable(false)).map_err(no_dds)?;
+        let publisher = participant.create_publisher(&passing()).map_err(no_dds)?;
         let subscriber = participant.create_subscriber(&best_effort()).map_err(no_dds)?;
         let runtime = Builder::new_multi_thread().worker_threads(1).build().map_err(no_dds)?;
-        Ok(Self {
+        let mut node = Self {
             domain: domain.clone(),
             publisher,
             subscriber,
             participant,
+            announced: None,
             runtime: Some(runtime),
-        })
+        };
+        if let Some(distro) = domain.distro {
+            let qos = reliable(Durability::TransientLocal, 1);
+            let writer = node.writer(NODES.to_owned(), NODES_TYPE, qos)?;
+            let space = domain.space();
+            let participant = node.participant.guid().to_bytes();
+            let endpoints = NodeEndpoints::new(participant, space, &node_name());
+            let endpoints = Mutex::new(endpoints);
+            node.announced = Some(Announcement { distro, endpoints, writer });
+            node.announce(|_| {})?;
+        }
+        Ok(node)
     }
 
-    /// The name of a topic of the robot in DDS.
+    /// Lists the endpoints of this node again, after a change.
+    fn announce(&self, change: impl FnOnce(&mut NodeEndpoints)) -> Result<(), RobotError> {
+        let Some(Announcement { distro, endpoints, writer }) = &self.announced else {
+            return Ok(());
+        };
+        let mut endpoints = endpoints.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut endpoints);
+        writer.publish(endpoints.body(*distro))
+    }
+
+    /// The name in DDS of a topic of the robot. All robots have the same clock.
     fn dds_name(&self, topic: &str) -> String {
-        let namespace = self.domain.namespace.trim_matches('/');
-        let topic = topic.trim_start_matches('/');
-        if namespace.is_empty() { format!("rt/{topic}") } else { format!("rt/{namespace}/{topic}") }
+        let space = if topic == CLOCK { "" } else { self.domain.space() };
+        dds_name("rt", space, topic)
     }
 
-    fn topic(&self, name: &str, type_name: &str, qos: &QosPolicies) -> Result<Topic, RobotError> {
-        let name = self.dds_name(name);
+    fn topic(
+        &self,
+        dds_name: String,
+        type_name: &str,
+        qos: &QosPolicies,
+    ) -> Result<Topic, RobotError> {
         let type_name = dds_type(type_name);
-        self.participant.create_topic(name, type_name, qos, TopicKind::NoKey).map_err(no_dds)
+        self.participant.create_topic(dds_name, type_name, qos, TopicKind::NoKey).map_err(no_dds)
+    }
+
+    fn writer(
+        &self,
+        dds_name: String,
+        type_name: &str,
+        qos: QosPolicies,
+    ) -> Result<Writer, RobotError> {
+        let of = self.topic(dds_name.clone(), type_name, &qos)?;
+        let writer = self.publisher.create_datawriter_no_key::<Vec<u8>, AsItIs>(&of, Some(qos));
+        let writer = writer.map_err(no_dds)?;
+        self.announce(|endpoints| endpoints.add_writer(writer.guid().to_bytes()))?;
+        Ok(Writer { writer, topic: dds_name })
+    }
+
+    fn reader(
+        &self,
+        dds_name: String,
+        type_name: &str,
+        qos: QosPolicies,
+    ) -> Result<DataReader<EncodedBody, AsItIs>, RobotError> {
+        let of = self.topic(dds_name, type_name, &qos)?;
+        let reader = self.subscriber.create_datareader_no_key(&of, Some(qos));
+        let reader: DataReader<EncodedBody, AsItIs> = reader.map_err(no_dds)?;
+        self.announce(|endpoints| endpoints.add_reader(reader.guid().to_bytes()))?;
+        Ok(reader)
+    }
+
+    fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
+        if let Some(runtime) = &self.runtime {
+            runtime.spawn(task);
+        }
     }
 
     pub(super) fn advertise(&self, topic: &str, type_name: &str) -> Result<Writer, RobotError> {
-        let qos = reliable(false);
-        let of = self.topic(topic, type_name, &qos)?;
-        let writer = self.publisher.create_datawriter_no_key::<Vec<u8>, AsItIs>(&of, Some(qos));
-        Ok(Writer { writer: writer.map_err(no_dds)?, topic: topic.to_owned() })
+        let writer = self.writer(self.dds_name(topic), type_name, passing())?;
+        Ok(Writer { topic: topic.to_owned(), ..writer })
     }
 
     /// Calls a function with each message of a topic. Transforms that stay are sent again to those who come later.
@@ -125,18 +214,14 @@ impl DdsNode {
         stays: bool,
         mut received: impl FnMut(Option<EncodedBody>) + Send + 'static,
     ) -> Result<(), RobotError> {
-        let qos = if stays { reliable(true) } else { best_effort() };
-        let of = self.topic(topic, type_name, &qos)?;
-        let reader: DataReader<EncodedBody, AsItIs> =
-            self.subscriber.create_datareader_no_key(&of, Some(qos)).map_err(no_dds)?;
-        if let Some(runtime) = &self.runtime {
-            runtime.spawn(async move {
-                let mut messages = reader.async_bare_sample_stream();
-                while let Some(message) = messages.next().await {
-                    received(message.ok());
-                }
-            });
-        }
+        let qos = if stays { reliable(Durability::TransientLocal, DEPTH) } else { best_effort() };
+        let reader = self.reader(self.dds_name(topic), type_name, qos)?;
+        self.spawn(async move {
+            let mut messages = reader.async_bare_sample_stream();
+            while let Some(message) = messages.next().await {
+                received(message.ok());
+            }
+        });
         Ok(())
     }
 
@@ -152,6 +237,38 @@ impl DdsNode {
             inbox.add(message.and_then(|body| read(&body)));
         })?;
         Ok(subscription)
+    }
+
+    /// Publishes to a topic whose last message late readers get, too.
+    pub(super) fn advertise_last(
+        &self,
+        topic: &str,
+        type_name: &str,
+    ) -> Result<Writer, RobotError> {
+        self.writer(self.dds_name(topic), type_name, reliable(Durability::TransientLocal, 1))
+    }
+
+    /// Answers the requests of a service of the type `Trigger`.
+    pub(super) fn serve(
+        &self,
+        service: &str,
+        mut answer: impl FnMut() -> TriggerResponse + Send + 'static,
+    ) -> Result<(), RobotError> {
+        let name = |prefix, half| dds_name(prefix, self.domain.space(), service) + half;
+        let reader = self.reader(name("rq", "Request"), REQUEST, passing())?;
+        let writer = self.writer(name("rr", "Reply"), RESPONSE, passing())?;
+        self.spawn(async move {
+            let mut requests = reader.async_sample_stream();
+            while let Some(sample) = requests.next().await {
+                let Ok(sample) = sample else { continue };
+                let Some(request) = TriggerRequest::read(sample.value()) else { continue };
+                let info = sample.sample_info();
+                let to = caller(info.sample_identity(), info.related_sample_identity());
+                // A client that is gone needs no reply.
+                let _ = writer.reply(request.reply(&answer()), to);
+            }
+        });
+        Ok(())
     }
 
     /// The type of a topic that somebody else publishes, or reads: one of these types of ROS.
@@ -213,6 +330,13 @@ impl DdsNode {
         }
     }
 
+    /// The types of a topic that others publish.
+    pub(super) fn published_types(&self, topic: &str) -> BTreeSet<String> {
+        let endpoints = self.endpoints(&self.dds_name(topic), OtherSide::Publishes);
+        let plain = endpoints.into_iter().filter(|(_, obstacle)| obstacle.is_none());
+        plain.map(|(kind, _)| ros_type(&kind)).collect()
+    }
+
     /// The type of each endpoint of a topic that others have, and why no message would pass between it and ours, if none
     /// would.
     fn endpoints(&self, name: &str, side: OtherSide) -> Vec<(String, Option<String>)> {
@@ -231,7 +355,7 @@ impl DdsNode {
                 let all = self.participant.discovered_readers().into_iter();
                 let of_topic = all.map(|reader| reader.subscription_topic_data);
                 let described = of_topic.filter(|found| *found.topic_name() == name).map(|found| {
-                    let misfit = reliable(false).compliance_failure_wrt(&found.qos());
+                    let misfit = passing().compliance_failure_wrt(&found.qos());
                     let obstacle = misfit.map(|policy| format!("with another {policy:?}"));
                     (found.type_name().clone(), obstacle)
                 });
@@ -258,6 +382,12 @@ impl OtherSide {
             Self::Reads => "reads",
         }
     }
+}
+
+/// The name in DDS of a topic, or of a half of a service, in a namespace.
+fn dds_name(prefix: &str, space: &str, name: &str) -> String {
+    let name = name.trim_start_matches('/');
+    if space.is_empty() { format!("{prefix}/{name}") } else { format!("{prefix}/{space}/{name}") }
 }
 
 /// The name of a type of ROS in DDS.
@@ -293,6 +423,13 @@ impl Writer {
     pub(super) fn publish(&self, body: Vec<u8>) -> Result<(), RobotError> {
         let closed = |_| RobotError::Closed { topic: self.topic.clone() };
         self.writer.write(body, None).map_err(closed)
+    }
+
+    /// Publishes the body of a reply.
+    fn reply(&self, body: Vec<u8>, to: SampleIdentity) -> Result<(), RobotError> {
+        let options = WriteOptionsBuilder::new().related_sample_identity(to).build();
+        let closed = |_| RobotError::Closed { topic: self.topic.clone() };
+        self.writer.write_with_options(body, options).map(drop).map_err(closed)
     }
 }
 
@@ -348,6 +485,49 @@ impl SerializerAdapter<Vec<u8>> for AsItIs {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A client as Fast DDS makes it: it says in the header of its request by which reader it reads replies, and takes those
+    /// that name this reader and the number of its request.
+    #[test]
+    fn a_client_that_says_who_it_is_in_the_header_gets_its_reply() {
+        let number = (100 + process::id() % 100) as u16;
+        let domain = RobotDomain { number, namespace: "robot1".to_owned(), ..Default::default() };
+        let (server, client) = (DdsNode::new(&domain).unwrap(), DdsNode::new(&domain).unwrap());
+        let mut calls = 0;
+        let answer = move || {
+            calls += 1;
+            TriggerResponse { success: calls == 1, message: "done" }
+        };
+        server.serve("/toposlam/abort", answer).unwrap();
+        let requests =
+            client.writer("rq/robot1/toposlam/abortRequest".to_owned(), REQUEST, passing());
+        let requests = requests.unwrap();
+        let replies =
+            client.reader("rr/robot1/toposlam/abortReply".to_owned(), RESPONSE, passing());
+        let mut replies = replies.unwrap();
+        let until = Instant::now() + Duration::from_secs(20);
+        let is_known = |name: &str, side| !client.endpoints(name, side).is_empty();
+        while !is_known("rq/robot1/toposlam/abortRequest", OtherSide::Reads)
+            || !is_known("rr/robot1/toposlam/abortReply", OtherSide::Publishes)
+        {
+            assert!(Instant::now() < until, "no service");
+            sleep(LOOK);
+        }
+        let writer_guid = replies.guid();
+        let me = SampleIdentity { writer_guid, ..SampleIdentity::default() };
+        let options = WriteOptionsBuilder::new().related_sample_identity(me).build();
+        let asked = requests.writer.write_with_options(vec![0; 4], options).unwrap();
+        let reply = loop {
+            assert!(Instant::now() < until, "no reply");
+            match replies.take_next_sample().unwrap() {
+                Some(reply) => break reply,
+                None => sleep(LOOK),
+            }
+        };
+        let related = reply.sample_info().related_sample_identity().unwrap();
+        assert_eq!(related, SampleIdentity { writer_guid, ..asked });
+        assert!(reply.value().bytes.starts_with(b"\x01\0\0\0\x05\0\0\0done\0"));
+    }
 
     #[test]
     fn types_have_the_names_of_ros_2() {

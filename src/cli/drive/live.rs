@@ -55,7 +55,9 @@ impl DriveArguments {
             wheels: self.topic("wheels"),
         };
         let place = self.ros.place()?;
-        let Some(robot) = self.ros.connect(&topics, live, self.patience, must_stop)? else {
+        let Some((robot, mut published)) =
+            self.ros.connect(&topics, live, self.sim_time, self.patience, must_stop)?
+        else {
             return Ok(Outcome::Incomplete);
         };
         let command = self.given.command(&["toposlam", "drive"]);
@@ -64,7 +66,7 @@ impl DriveArguments {
             if self.options.json { None } else { Some(&mut *out) };
         let head = format!("A robot {place}.");
         let mut capture = RunCapture::new(head, story_out, frame_kind, None)?;
-        let observer = (&mut log, &mut capture);
+        let observer = (&mut log, (&mut capture, &mut *published));
         let (mapping, mapped, moves, robot) = if let Some(params) = &corridors {
             let mut explorer = CorridorExplorer::new(robot, params, observer);
             let (mapping, mapped) = explorer.map(&settings);
@@ -76,7 +78,8 @@ impl DriveArguments {
         };
         let logged = self.options.close(log);
         let (seconds, frames) = (robot.odometry().time, robot.frames());
-        // The robot stops before anything else.
+        // The robot stops before anything else; its topics end before its node.
+        drop(published);
         drop(robot);
         capture.finish()?;
         logged?;
