@@ -7,6 +7,10 @@
 #![cfg(all(feature = "ros2", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "ros2/faults.rs"]
+mod faults;
+#[path = "ros2/network.rs"]
+mod network;
 #[allow(dead_code, reason = "other programs use the rest")]
 mod output;
 mod process;
@@ -21,6 +25,7 @@ use std::{
 };
 
 use mcap::MessageStream;
+use network::OwnNetwork;
 use output::{stderr, stdout};
 use process::{Process, until};
 
@@ -39,16 +44,37 @@ static ALONE: Mutex<()> = Mutex::new(());
 struct Stage {
     folder: PathBuf,
     domain: String,
-    _alone: MutexGuard<'static, ()>,
+    /// Where its programs run, if not in the network of the machine.
+    network: Option<OwnNetwork>,
+    _alone: Option<MutexGuard<'static, ()>>,
 }
 
 impl Stage {
     fn new(name: &str) -> Self {
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        Self { _alone: Some(alone), ..Self::beside(name, 0) }
+    }
+
+    /// One of several at a time.
+    fn beside(name: &str, number: u32) -> Self {
         // Other than the usual one, and than that of another run of these tests.
-        let domain = 20 + std::process::id() % 200;
+        let domain = 20 + (std::process::id() + number) % 200;
         let folder = output::folder(&format!("ros2-{name}"));
-        Self { folder, domain: domain.to_string(), _alone: alone }
+        Self { folder, domain: domain.to_string(), network: None, _alone: None }
+    }
+
+    /// The same in a network of its own; `None` where there are no rights.
+    fn in_own_network(self) -> Option<Self> {
+        let network = OwnNetwork::new(&self.domain)?;
+        Some(Self { network: Some(network), ..self })
+    }
+
+    /// A program in the network of this test.
+    fn command(&self, program: &str) -> Command {
+        match &self.network {
+            Some(network) => network.command(program),
+            None => Command::new(program),
+        }
     }
 
     fn path(&self, name: &str) -> String {
@@ -56,7 +82,7 @@ impl Stage {
     }
 
     fn toposlam(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_toposlam"));
+        let mut command = self.command(env!("CARGO_BIN_EXE_toposlam"));
         command.current_dir(env!("CARGO_MANIFEST_DIR")).args(arguments).stdin(Stdio::null());
         command.env("ROS_DOMAIN_ID", &self.domain);
         command
@@ -88,19 +114,23 @@ impl Stage {
         Process::start(command.stdout(Stdio::piped()).stderr(Stdio::piped()))
     }
 
-    /// A participant by Cyclone DDS; `None` where it is not installed.
-    fn peer(&self, verb: &str, what: &str) -> Option<Process> {
+    /// A program in Python that uses Cyclone DDS; `None` where that is not installed.
+    fn python(&self, script: &str, arguments: &[&str], output: &str) -> Option<Process> {
         let has = Command::new("python3").args(["-c", "import cyclonedds"]).output().unwrap();
         if !has.status.success() {
             assert_ne!(env::var("TOPOSLAM_ROS").as_deref(), Ok("required"), "{}", stderr(&has));
             eprintln!("skipped: the Python package cyclonedds is not installed");
             return None;
         }
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2/peer.py");
-        let mut command = Command::new("python3");
-        command.arg(script).args([verb, what]).stdin(Stdio::null());
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2").join(script);
+        let mut command = self.command("python3");
+        command.arg(script).args(arguments).stdin(Stdio::null());
         command.env("ROS_DOMAIN_ID", &self.domain).env("CYCLONEDDS_URI", CYCLONE);
-        Some(Process::start(command.stdout(fs::File::create(self.folder.join("peer")).unwrap())))
+        Some(Process::start(command.stdout(fs::File::create(self.folder.join(output)).unwrap())))
+    }
+
+    fn peer(&self, verb: &str, what: &str) -> Option<Process> {
+        self.python("peer.py", &[verb, what], "peer")
     }
 
     /// The lines of a file that begin with a word.
