@@ -19,7 +19,7 @@ use std::{
     env, fs,
     path::{Path, PathBuf},
     process::{Command, Stdio},
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError},
     thread::sleep,
     time::{Duration, Instant},
 };
@@ -40,33 +40,46 @@ const CYCLONE: &str = "<CycloneDDS><Domain><General><Interfaces><NetworkInterfac
 /// Two robots at a time would be too slow.
 static ALONE: Mutex<()> = Mutex::new(());
 
+fn folder(name: &str) -> PathBuf {
+    output::folder(&format!("ros2-{name}"))
+}
+
+/// Whether Python has Cyclone DDS. It must, if `TOPOSLAM_ROS` is `required`.
+fn has_cyclone() -> bool {
+    static HAS: LazyLock<bool> = LazyLock::new(|| {
+        let has = Command::new("python3").args(["-c", "import cyclonedds"]).output().unwrap();
+        if !has.status.success() {
+            assert_ne!(env::var("TOPOSLAM_ROS").as_deref(), Ok("required"), "{}", stderr(&has));
+            eprintln!("skipped: the Python package cyclonedds is not installed");
+        }
+        has.status.success()
+    });
+    *HAS
+}
+
 /// A folder and a domain for a test.
 struct Stage {
     folder: PathBuf,
-    domain: String,
+    domain: u32,
     /// Where its programs run, if not in the network of the machine.
-    network: Option<OwnNetwork>,
+    network: Option<Arc<OwnNetwork>>,
     _alone: Option<MutexGuard<'static, ()>>,
 }
 
 impl Stage {
+    /// In a network of its own where there are rights, so that no other program is in its domain.
     fn new(name: &str) -> Self {
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-        Self { _alone: Some(alone), ..Self::beside(name, 0) }
-    }
-
-    /// One of several at a time.
-    fn beside(name: &str, number: u32) -> Self {
+        let network = OwnNetwork::new(name).ok().map(Arc::new);
         // Other than the usual one, and than that of another run of these tests.
-        let domain = 20 + (std::process::id() + number) % 200;
-        let folder = output::folder(&format!("ros2-{name}"));
-        Self { folder, domain: domain.to_string(), network: None, _alone: None }
+        let domain = 20 + std::process::id() % 200;
+        Self { folder: folder(name), domain, network, _alone: Some(alone) }
     }
 
-    /// The same in a network of its own; `None` where there are no rights.
-    fn in_own_network(self) -> Option<Self> {
-        let network = OwnNetwork::new(&self.domain)?;
-        Some(Self { network: Some(network), ..self })
+    /// One of several at a time, in another domain of the same network.
+    fn beside(&self, name: &str, number: u32) -> Self {
+        let domain = 20 + (self.domain + number) % 200;
+        Self { folder: folder(name), domain, network: self.network.clone(), _alone: None }
     }
 
     /// A program in the network of this test.
@@ -84,7 +97,7 @@ impl Stage {
     fn toposlam(&self, arguments: &[&str]) -> Command {
         let mut command = self.command(env!("CARGO_BIN_EXE_toposlam"));
         command.current_dir(env!("CARGO_MANIFEST_DIR")).args(arguments).stdin(Stdio::null());
-        command.env("ROS_DOMAIN_ID", &self.domain);
+        command.env("ROS_DOMAIN_ID", self.domain.to_string());
         command
     }
 
@@ -116,16 +129,13 @@ impl Stage {
 
     /// A program in Python that uses Cyclone DDS; `None` where that is not installed.
     fn python(&self, script: &str, arguments: &[&str], output: &str) -> Option<Process> {
-        let has = Command::new("python3").args(["-c", "import cyclonedds"]).output().unwrap();
-        if !has.status.success() {
-            assert_ne!(env::var("TOPOSLAM_ROS").as_deref(), Ok("required"), "{}", stderr(&has));
-            eprintln!("skipped: the Python package cyclonedds is not installed");
+        if !has_cyclone() {
             return None;
         }
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2").join(script);
         let mut command = self.command("python3");
         command.arg(script).args(arguments).stdin(Stdio::null());
-        command.env("ROS_DOMAIN_ID", &self.domain).env("CYCLONEDDS_URI", CYCLONE);
+        command.env("ROS_DOMAIN_ID", self.domain.to_string()).env("CYCLONEDDS_URI", CYCLONE);
         Some(Process::start(command.stdout(fs::File::create(self.folder.join(output)).unwrap())))
     }
 

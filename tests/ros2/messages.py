@@ -117,9 +117,7 @@ class PoseStamped(IdlStruct, typename="geometry_msgs::msg::dds_::PoseStamped_"):
 
 
 BEST_EFFORT = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Policy.History.KeepLast(10))
-RELIABLE = Qos(
-    Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.Volatile, Policy.History.KeepLast(10)
-)
+RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.Volatile, Policy.History.KeepLast(10))
 STAYS = Qos(
     Policy.Reliability.Reliable(duration(seconds=1)),
     Policy.Durability.TransientLocal,
@@ -136,8 +134,6 @@ def reader(name: str, kind: type[IdlStruct], qos: Qos = BEST_EFFORT) -> DataRead
     return DataReader(participant, topic, qos=Qos(*qos, XCDR1))
 
 
-def writer(
-    name: str, kind: type[IdlStruct], representation: Policy = XCDR1, qos: Qos = RELIABLE
-) -> DataWriter:
+def writer(name: str, kind: type[IdlStruct], representation: Policy = XCDR1, qos: Qos = RELIABLE) -> DataWriter:
     topic = Topic(participant, "rt" + name, kind, qos=Qos(representation))
     return DataWriter(participant, topic, qos=Qos(*qos, representation))

@@ -196,7 +196,7 @@ class Robot:
     def command(self, speed: float, turning: float) -> None:
         if (speed, turning) != (0.0, 0.0):
             self.first_motion = min(self.first_motion, self.time)
-        if speed > 0.0 and self.last_speed == 0.0:
+        if speed > 0.01 >= self.last_speed:
             for fault in self.options.fault:
                 if fault.begun == math.inf and self.time >= self.first_motion + fault.begin:
                     fault.begun = self.time + self.options.delay + 0.1
