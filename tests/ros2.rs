@@ -1,12 +1,14 @@
 //! A robot behind the topics of ROS 2, over DDS: `toposlam drive --ros2` drives the simulated one of `toposlam simulate
 //! --ros2`, and Cyclone DDS, another implementation, listens and publishes. Sections 2.5 and 6.
 //!
-//! Everything is on loopback. Where the Python package cyclonedds is not installed its tests are skipped, with a message,
-//! unless `TOPOSLAM_ROS` is `required`.
+//! Everything is on loopback, in a network of its own where there are rights for it. Where the Python package cyclonedds or
+//! Fast DDS is not installed the tests that need it are skipped, with a message, unless `TOPOSLAM_ROS` is `required`.
 
 #![cfg(all(feature = "ros2", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "ros2/fastdds.rs"]
+mod fastdds;
 #[path = "ros2/faults.rs"]
 mod faults;
 #[path = "ros2/network.rs"]
@@ -19,7 +21,10 @@ use std::{
     env, fs,
     path::{Path, PathBuf},
     process::{Command, Stdio},
-    sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, LazyLock,
+        atomic::{AtomicU32, Ordering},
+    },
     thread::sleep,
     time::{Duration, Instant},
 };
@@ -30,19 +35,12 @@ use output::{stderr, stdout};
 use process::{Process, until};
 
 /// How many times faster the simulated time is than the real time.
-const SPEED: &str = "8";
+const SPEED: &str = "12";
 
 /// Cyclone DDS finds no others than those on loopback, by asking them one by one.
 const CYCLONE: &str = "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" \
      multicast=\"false\"/></Interfaces></General><Discovery><ParticipantIndex>auto</ParticipantIndex>\
      <Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>";
-
-/// Two robots at a time would be too slow.
-static ALONE: Mutex<()> = Mutex::new(());
-
-fn folder(name: &str) -> PathBuf {
-    output::folder(&format!("ros2-{name}"))
-}
 
 /// Whether Python has Cyclone DDS. It must, if `TOPOSLAM_ROS` is `required`.
 fn has_cyclone() -> bool {
@@ -63,23 +61,25 @@ struct Stage {
     domain: u32,
     /// Where its programs run, if not in the network of the machine.
     network: Option<Arc<OwnNetwork>>,
-    _alone: Option<MutexGuard<'static, ()>>,
 }
 
 impl Stage {
     /// In a network of its own where there are rights, so that no other program is in its domain.
     fn new(name: &str) -> Self {
-        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-        let network = OwnNetwork::new(name).ok().map(Arc::new);
-        // Other than the usual one, and than that of another run of these tests.
-        let domain = 20 + std::process::id() % 200;
-        Self { folder: folder(name), domain, network, _alone: Some(alone) }
+        Self::within(OwnNetwork::new(name).ok().map(Arc::new), name)
     }
 
-    /// One of several at a time, in another domain of the same network.
-    fn beside(&self, name: &str, number: u32) -> Self {
-        let domain = 20 + (self.domain + number) % 200;
-        Self { folder: folder(name), domain, network: self.network.clone(), _alone: None }
+    /// One of several at a time in the same network.
+    fn beside(&self, name: &str) -> Self {
+        Self::within(self.network.clone(), name)
+    }
+
+    fn within(network: Option<Arc<OwnNetwork>>, name: &str) -> Self {
+        static NUMBER: AtomicU32 = AtomicU32::new(0);
+        // Other than the usual one, than that of another test, and than most of another run of these tests.
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let domain = 20 + (std::process::id() + number) % 200;
+        Self { folder: output::folder(&format!("ros2-{name}")), domain, network }
     }
 
     /// A program in the network of this test.

@@ -2,7 +2,7 @@
 //
 //     fastdds_robot SPEED    at this multiple of the real time, in the domain ROS_DOMAIN_ID
 //
-// It stands at the corner of a building with two hallways of 16 m, to the north and to the east, and looks west: the
+// It stands at the corner of a building with two hallways of 8 m, to the north and to the east, and looks west: the
 // hallway behind it is the facing one. It does exactly what it is told. Messages are written and read byte by byte, as
 // RTPS carries them; no code is generated.
 
@@ -118,7 +118,7 @@ bool read_twist(const Bytes& bytes, double& speed, double& turning) {
   return true;
 }
 
-constexpr double kHalfWidth = 1.0, kLength = 16.0, kRange = 30.0, kTick = 0.02;
+constexpr double kHalfWidth = 1.0, kLength = 8.0, kRange = 30.0, kTick = 0.02;
 
 bool is_floor(double x, double y) {
   const bool north = std::abs(x) < kHalfWidth && y > -kHalfWidth && y < kLength + kHalfWidth;

@@ -15,7 +15,6 @@ first motion. `--fault` may be repeated:
     reordered    each pair of messages comes in reverse order
     silent       no messages
     no-scans     no scans
-    no-odometry  no odometry
     wrong-frame  scans of another frame
     nan          odometry that is not a number
     back         stamps are 100 s early
@@ -336,15 +335,14 @@ class Topics:
         if "nan" in faults:
             pose.position.x = math.nan
         twist = Twist(Vector3(speed, 0.0, 0.0), Vector3(0.0, 0.0, turning))
-        if "no-odometry" not in faults:
-            message = Odometry(
-                Header(stamp, "odom"),
-                "base_link",
-                PoseWithCovariance(pose, [0.0] * 36),
-                TwistWithCovariance(twist, [0.0] * 36),
-            )
-            if self.odometry.put(now, message, faults, chance) and not faults & {"nan", "back"}:
-                self.good["odometry"] = time.monotonic()
+        message = Odometry(
+            Header(stamp, "odom"),
+            "base_link",
+            PoseWithCovariance(pose, [0.0] * 36),
+            TwistWithCovariance(twist, [0.0] * 36),
+        )
+        if self.odometry.put(now, message, faults, chance) and not faults & {"nan", "back"}:
+            self.good["odometry"] = time.monotonic()
         if tick % 10 == 0:
             self.frames.write(TFMessage([transform(stamp, "odom", "base_link", x, y, heading)]))
         if tick % round(1 / (TICK * robot.options.scans)) == 0 and "no-scans" not in faults:
@@ -389,6 +387,7 @@ def main() -> None:
         signal.signal(which, lambda number, _: stopped.append(number))
     robot = Robot(options)
     topics = Topics(robot)
+    print("begin", flush=True)
     due = time.monotonic()
     tick = 0
     while not stopped:

@@ -130,6 +130,16 @@ impl LiveBase {
         self.odometry.peek(|now| now.stamp).unwrap_or_default().max(self.last.stamp)
     }
 
+    /// # Errors
+    /// Returns an error if odometry has not come for too long.
+    pub(super) fn check_odometry(&mut self) -> Result<(), RobotError> {
+        self.hear();
+        if self.heard.elapsed() > self.patience {
+            return Err(self.odometry.silent(self.patience));
+        }
+        Ok(())
+    }
+
     /// Takes the last odometry, if it is newer.
     fn hear(&mut self) -> Option<Reckoning> {
         let (now, heard) = self.odometry.take_timed()?;
@@ -175,9 +185,7 @@ impl LiveBase {
         let last = self.hear();
         let stopping = wheels == WheelSpeeds::STOP;
         if !stopping {
-            if self.heard.elapsed() > self.patience {
-                return Err(self.odometry.silent(self.patience));
-            }
+            self.check_odometry()?;
             if let Some(scanner) = &mut self.scanner {
                 scanner.update(self.patience)?;
             }

@@ -129,6 +129,10 @@ impl LiveRobot {
             (SensorMessages::Markers(_), None) => Err(RobotError::NoImage),
         };
         self.base.scanner = scanner;
+        if frame.is_err() {
+            // A robot that is gone sends nothing at all.
+            self.base.check_odometry()?;
+        }
         frame.map_err(|error| match (error, behind) {
             (RobotError::Silent { .. }, Some(behind)) => RobotError::StaleImage { behind },
             (RobotError::Silent { .. }, None) => RobotError::NoImage,
