@@ -6,8 +6,8 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
     Wheels,
-    latency::LatencyMeter,
     messages::{Nanoseconds, Reckoning, SECOND},
+    response::ResponseMeter,
     scanner::{Scanner, went_back},
     topic::Subscription,
 };
@@ -75,7 +75,7 @@ pub(super) struct LiveBase {
     heard: Instant,
     /// `None` for a robot without a laser scanner.
     pub(super) scanner: Option<Scanner>,
-    latency: LatencyMeter,
+    response: ResponseMeter,
     pub(super) track: Vec<Sample>,
 }
 
@@ -98,7 +98,7 @@ impl LiveBase {
             last,
             heard: Instant::now(),
             scanner,
-            latency: LatencyMeter::default(),
+            response: ResponseMeter::default(),
             track: Vec::new(),
         };
         base.sample(WheelSpeeds::STOP);
@@ -214,8 +214,8 @@ impl LiveBase {
         })?;
         self.heard = Instant::now();
         self.sample(wheels);
-        self.latency.add(wheels, before, self.reading());
-        if self.latency.still() >= STILL {
+        self.response.add(wheels, before, self.reading());
+        if self.response.still() >= STILL {
             return Err(RobotError::DoesNotMove { motions: STILL });
         }
         Ok(())
@@ -238,7 +238,7 @@ impl Base for LiveBase {
     }
 
     fn response(&self) -> BaseResponse {
-        self.latency.response()
+        self.response.response()
     }
 
     /// By the last scan. A robot with a camera has only what Algorithm 2 sees.

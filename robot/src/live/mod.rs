@@ -5,10 +5,10 @@
 //! They have no other connection.
 
 mod base;
-mod latency;
 pub(crate) mod messages;
 #[cfg(test)]
 mod motion_tests;
+mod response;
 mod robot;
 mod scanner;
 pub(crate) mod topic;

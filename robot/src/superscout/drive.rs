@@ -135,7 +135,7 @@ impl<B: Base> Drive<'_, B> {
             let there = self.0.reading().odometry;
             turned += wrapped(there.heading - last.heading);
             last = there;
-            if self.0.response() == BaseResponse::IDEAL || (angle - turned).abs() <= REST_ANGLE {
+            if !self.goes_on(begun, angle - turned, REST_ANGLE) {
                 break;
             }
         }
@@ -172,11 +172,17 @@ impl<B: Base> Drive<'_, B> {
             }
             self.stop()?;
             let left = distance - self.0.reading().odometry.distance(&begun);
-            if self.0.response() == BaseResponse::IDEAL || self.0.room().min(left) <= REST {
+            if self.0.room().min(left) <= REST || !self.goes_on(distance - gone, left, REST) {
                 break;
             }
         }
         Ok(())
+    }
+
+    /// Whether a motion of which so much was left before, and after it, goes on. One that was not carried out does not.
+    fn goes_on(&self, before: f64, after: f64, rest: f64) -> bool {
+        self.0.response() != BaseResponse::IDEAL
+            && (rest..before.abs() / 2.0).contains(&after.abs())
     }
 
     /// Stops.

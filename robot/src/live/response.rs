@@ -1,4 +1,4 @@
-//! How late a base obeys, measured by odometry.
+//! How a base obeys: how late, and how fast it brakes, measured by odometry.
 
 use crate::robot::{Sample, TimedOdometry};
 use crate::superscout::{BaseResponse, PERIOD, WheelSpeeds};
@@ -19,35 +19,51 @@ const SLIP: f64 = 0.1;
 const READING: f64 = 0.003;
 /// A motion was not carried out if odometry shows less than this part of what was commanded.
 const CARRIED_OUT: f64 = 0.1;
-/// The limits of what is commanded, in metres or radians a second, each second: any base for a floor can do that.
+/// The limits of what is commanded, in metres or radians a second, each second: most bases for a floor can do that.
 const ACCELERATION: f64 = 0.3;
 const TURN_ACCELERATION: f64 = 0.6;
+/// A base that goes on for longer than this after a stop, besides its lag, brakes more slowly, in metres or radians:
+const COASTS: f64 = 0.01;
+/// the limit is this part of the last one,
+const GENTLER: f64 = 0.7;
+/// and at least this part of the first.
+const GENTLEST: f64 = 0.15;
 
 /// Measures a base by its motions: each begins and ends at a standstill.
 #[derive(Clone, Debug)]
-pub(super) struct LatencyMeter {
+pub(super) struct ResponseMeter {
     lag: Option<f64>,
     /// The length of a period, in seconds.
     period: f64,
+    /// The limits, in metres or radians a second, each second.
+    acceleration: f64,
+    turn_acceleration: f64,
     /// The present motion: its begin, and each command with the odometry after it.
     motion: Vec<Sample>,
     /// The number of motions in a row that were not carried out.
     still: u32,
 }
 
-impl Default for LatencyMeter {
+impl Default for ResponseMeter {
     fn default() -> Self {
-        Self { lag: None, period: PERIOD, motion: Vec::new(), still: 0 }
+        Self {
+            lag: None,
+            period: PERIOD,
+            acceleration: ACCELERATION,
+            turn_acceleration: TURN_ACCELERATION,
+            motion: Vec::new(),
+            still: 0,
+        }
     }
 }
 
-impl LatencyMeter {
+impl ResponseMeter {
     pub(super) fn response(&self) -> BaseResponse {
         BaseResponse {
             period: self.period,
             lag: self.lag.unwrap_or(UNKNOWN),
-            acceleration: ACCELERATION,
-            turn_acceleration: TURN_ACCELERATION,
+            acceleration: self.acceleration,
+            turn_acceleration: self.turn_acceleration,
         }
     }
 
@@ -88,12 +104,22 @@ impl LatencyMeter {
         }
         self.still = 0;
         let found = motion.lag();
-        self.lag = Some(self.lag.map_or(found, |lag| lag + NEWS * (found - lag)));
+        let lag = self.lag.map_or(found, |lag| lag + NEWS * (found - lag));
+        self.lag = Some(lag);
+        if motion.coasted(lag) > COASTS {
+            let (limit, first) = if motion.is_turn {
+                (&mut self.turn_acceleration, TURN_ACCELERATION)
+            } else {
+                (&mut self.acceleration, ACCELERATION)
+            };
+            *limit = (*limit * GENTLER).max(first * GENTLEST);
+        }
     }
 }
 
 /// A motion by its commands and by odometry, along the way or about the axis.
 struct Motion {
+    is_turn: bool,
     /// The time from which on each speed was commanded.
     speeds: Vec<(f64, f64)>,
     /// The way since the beginning, or the turn, at a time.
@@ -116,7 +142,7 @@ impl Motion {
             };
             readings.push((next.time, moved));
         }
-        Self { speeds, readings }
+        Self { is_turn, speeds, readings }
     }
 
     /// What was commanded up to a time.
@@ -130,6 +156,13 @@ impl Motion {
             },
         )
         .sum()
+    }
+
+    /// How far it went after the stop, besides what was to come with this lag.
+    fn coasted(&self, lag: f64) -> f64 {
+        let [.., (stopped, at), (_, end)] = self.readings[..] else { return 0.0 };
+        let all = self.commanded(f64::INFINITY);
+        (end - at - (all - self.commanded(stopped - lag))) * all.signum()
     }
 
     /// The lag with which the readings fit best to a part of what was commanded. A part that is far from all of it is less
