@@ -34,6 +34,11 @@ impl Stage {
         self.python("robot.py", &[&[plan.as_str()], more].concat(), output)
     }
 
+    /// Waits until it publishes.
+    fn ready(&self, output: &str) {
+        until("the robot is there", 200, || !self.lines(output, "begin").is_empty());
+    }
+
     /// The commands that it got, by what it printed.
     fn commands(&self, output: &str) -> Vec<RobotCommand> {
         let lines = self.lines(output, "command ");
@@ -87,12 +92,13 @@ fn a_robot_of_another_program_maps_its_building_although_messages_fail() {
         ["lost@50+150", "late@250+100", "doubled@400+50", "reordered@500+50", "silent@600+10"];
     let faults: Vec<&str> = faults.iter().flat_map(|fault| ["--fault", fault]).collect();
     let Some(first) = stage.robot(&[&robot[..], &faults].concat(), "first") else { return };
+    stage.ready("first");
     let drive = stage.drive(&["--patience", "5"]);
-    until("the robot is on its way", 120, || stage.commands("first").len() > 1500);
+    until("the robot is on its way", 400, || stage.commands("first").len() > 1500);
     first.signal("-KILL");
     first.ends();
     let second = stage.robot(&robot, "second").unwrap();
-    let output = drive.ends_within(300);
+    let output = drive.ends_within(600);
     second.signal("-INT");
     assert!(second.ends_within(20).status.success());
     assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
@@ -147,7 +153,7 @@ fn after_a_fault_the_robot_stands_and_the_log_says_why_and_a_short_one_does_not_
     });
     let Some(robots) = robots.collect::<Option<Vec<_>>>() else { return };
     let drives = robots.into_iter().map(|(run, stage, robot)| {
-        until("the robot is there", 60, || !stage.lines("robot", "begin").is_empty());
+        stage.ready("robot");
         let drive = stage.drive(&["--patience", PATIENCE.1]);
         (run, stage, robot, drive)
     });
@@ -155,10 +161,10 @@ fn after_a_fault_the_robot_stands_and_the_log_says_why_and_a_short_one_does_not_
     for (run, stage, robot, drive) in started {
         let name = run.name;
         if run.end.is_none() {
-            until("the run goes on", 90, || stage.commands("robot").len() > 80);
+            until("the run goes on", 200, || stage.commands("robot").len() > 80);
             drive.signal("-TERM");
         }
-        let output = drive.ends_within(90);
+        let output = drive.ends_within(200);
         robot.signal("-INT");
         assert!(robot.ends_within(20).status.success(), "{name}");
         let code = if run.end.is_some() { 1 } else { 3 };
@@ -176,8 +182,9 @@ fn after_a_fault_the_robot_stands_and_the_log_says_why_and_a_short_one_does_not_
 fn the_robot_stops_before_an_obstacle_that_appears_while_it_moves() {
     let stage = Stage::new("obstacle");
     let Some(robot) = stage.robot(&["--fault", "obstacle@2+99"], "robot") else { return };
+    stage.ready("robot");
     let drive = stage.drive(&[]);
-    until("the obstacle appears", 60, || !stage.lines("robot", "obstacle").is_empty());
+    until("the obstacle appears", 200, || !stage.lines("robot", "obstacle").is_empty());
     sleep(Duration::from_secs(12));
     drive.signal("-INT");
     drive.ends_within(30);
@@ -194,9 +201,10 @@ fn the_robot_stops_before_an_obstacle_that_appears_while_it_moves() {
 fn the_watchdog_of_the_base_stops_it_when_the_program_is_killed() {
     let stage = Stage::new("killed");
     let Some(robot) = stage.robot(&[], "robot") else { return };
+    stage.ready("robot");
     let drive = stage.drive(&[]);
     let goes = || stage.commands("robot").last().is_some_and(|last| last.speed > 0.1);
-    until("the robot goes ahead", 60, goes);
+    until("the robot goes ahead", 200, goes);
     drive.signal("-KILL");
     drive.ends();
     let commands = stage.commands("robot");
