@@ -1,13 +1,19 @@
 //! A robot behind the topics of ROS 2, over DDS: `toposlam drive --ros2` drives the simulated one of `toposlam simulate
 //! --ros2`, and Cyclone DDS, another implementation, listens and publishes. Sections 2.5 and 6.
 //!
-//! Everything is on loopback. Where the Python package cyclonedds is not installed its tests are skipped, with a message,
-//! unless `TOPOSLAM_ROS` is `required`.
+//! Everything is on loopback, in a network of its own where there are rights for it. Where the Python package cyclonedds or
+//! Fast DDS is not installed the tests that need it are skipped, with a message, unless `TOPOSLAM_ROS` is `required`.
 
 #![cfg(all(feature = "ros2", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod camera_files;
+#[path = "ros2/fastdds.rs"]
+mod fastdds;
+#[path = "ros2/faults.rs"]
+mod faults;
+#[path = "ros2/network.rs"]
+mod network;
 #[allow(dead_code, reason = "other programs use the rest")]
 mod output;
 mod process;
@@ -16,40 +22,73 @@ use std::{
     env, fs,
     path::{Path, PathBuf},
     process::{Command, Stdio},
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, LazyLock,
+        atomic::{AtomicU32, Ordering},
+    },
     thread::sleep,
     time::{Duration, Instant},
 };
 
 use mcap::MessageStream;
+use network::OwnNetwork;
 use output::{stderr, stdout};
 use process::{Process, until};
 
 /// How many times faster the simulated time is than the real time.
-const SPEED: &str = "8";
+const SPEED: &str = "12";
 
 /// Cyclone DDS finds no others than those on loopback, by asking them one by one.
 const CYCLONE: &str = "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" \
      multicast=\"false\"/></Interfaces></General><Discovery><ParticipantIndex>auto</ParticipantIndex>\
      <Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>";
 
-/// Two robots at a time would be too slow.
-static ALONE: Mutex<()> = Mutex::new(());
+/// Whether Python has Cyclone DDS. It must, if `TOPOSLAM_ROS` is `required`.
+fn has_cyclone() -> bool {
+    static HAS: LazyLock<bool> = LazyLock::new(|| {
+        let has = Command::new("python3").args(["-c", "import cyclonedds"]).output().unwrap();
+        if !has.status.success() {
+            assert_ne!(env::var("TOPOSLAM_ROS").as_deref(), Ok("required"), "{}", stderr(&has));
+            eprintln!("skipped: the Python package cyclonedds is not installed");
+        }
+        has.status.success()
+    });
+    *HAS
+}
 
 /// A folder and a domain for a test.
 struct Stage {
     folder: PathBuf,
-    domain: String,
-    _alone: MutexGuard<'static, ()>,
+    domain: u32,
+    /// Where its programs run, if not in the network of the machine.
+    network: Option<Arc<OwnNetwork>>,
 }
 
 impl Stage {
+    /// In a network of its own where there are rights, so that no other program is in its domain.
     fn new(name: &str) -> Self {
-        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-        // Other than the usual one, and than that of another run of these tests.
-        let domain = 20 + std::process::id() % 200;
-        let folder = output::folder(&format!("ros2-{name}"));
-        Self { folder, domain: domain.to_string(), _alone: alone }
+        Self::within(OwnNetwork::new(name).ok().map(Arc::new), name)
+    }
+
+    /// One of several at a time in the same network.
+    fn beside(&self, name: &str) -> Self {
+        Self::within(self.network.clone(), name)
+    }
+
+    fn within(network: Option<Arc<OwnNetwork>>, name: &str) -> Self {
+        static NUMBER: AtomicU32 = AtomicU32::new(0);
+        // Other than the usual one, than that of another test, and than most of another run of these tests.
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let domain = 20 + (std::process::id() + number) % 200;
+        Self { folder: output::folder(&format!("ros2-{name}")), domain, network }
+    }
+
+    /// A program in the network of this test.
+    fn command(&self, program: &str) -> Command {
+        match &self.network {
+            Some(network) => network.command(program),
+            None => Command::new(program),
+        }
     }
 
     fn path(&self, name: &str) -> String {
@@ -57,9 +96,9 @@ impl Stage {
     }
 
     fn toposlam(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_toposlam"));
+        let mut command = self.command(env!("CARGO_BIN_EXE_toposlam"));
         command.current_dir(env!("CARGO_MANIFEST_DIR")).args(arguments).stdin(Stdio::null());
-        command.env("ROS_DOMAIN_ID", &self.domain);
+        command.env("ROS_DOMAIN_ID", self.domain.to_string());
         command
     }
 
@@ -89,24 +128,25 @@ impl Stage {
         Process::start(command.stdout(Stdio::piped()).stderr(Stdio::piped()))
     }
 
-    /// A participant by Cyclone DDS; `None` where it is not installed.
-    fn peer(&self, verb: &str, what: &str) -> Option<Process> {
-        let has = Command::new("python3").args(["-c", "import cyclonedds"]).output().unwrap();
-        if !has.status.success() {
-            assert_ne!(env::var("TOPOSLAM_ROS").as_deref(), Ok("required"), "{}", stderr(&has));
-            eprintln!("skipped: the Python package cyclonedds is not installed");
+    /// A program in Python that uses Cyclone DDS; `None` where that is not installed.
+    fn python(&self, script: &str, arguments: &[&str], output: &str) -> Option<Process> {
+        if !has_cyclone() {
             return None;
         }
-        let mut command = self.script("peer.py", &[verb, what]);
-        Some(Process::start(command.stdout(fs::File::create(self.folder.join("peer")).unwrap())))
+        let mut command = self.script(script, arguments);
+        Some(Process::start(command.stdout(fs::File::create(self.folder.join(output)).unwrap())))
+    }
+
+    fn peer(&self, verb: &str, what: &str) -> Option<Process> {
+        self.python("peer.py", &[verb, what], "peer")
     }
 
     /// A script of Cyclone DDS.
     fn script(&self, name: &str, arguments: &[&str]) -> Command {
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2").join(name);
-        let mut command = Command::new("python3");
+        let mut command = self.command("python3");
         command.arg(script).args(arguments).stdin(Stdio::null());
-        command.env("ROS_DOMAIN_ID", &self.domain).env("CYCLONEDDS_URI", CYCLONE);
+        command.env("ROS_DOMAIN_ID", self.domain.to_string()).env("CYCLONEDDS_URI", CYCLONE);
         command
     }
 
@@ -123,6 +163,25 @@ impl Stage {
         assert_eq!(last.channel.topic, "/toposlam/end");
         String::from_utf8_lossy(&last.data).into_owned()
     }
+}
+
+/// To a robot in a network of corridors long-8 is two junctions with three corridors between them.
+#[test]
+fn corridors_are_mapped_by_laser_over_dds() {
+    let stage = Stage::new("corridors");
+    let simulate = ["simulate", "worlds/laser/long-8.toml", "--ros2", "--sensor", "laser"];
+    let robot = ["--corridors", "--noise", "0.1", "--seed", "1", "--speed", SPEED];
+    let command = &mut stage.toposlam(&[&simulate[..], &robot].concat());
+    let robot = Process::start(command.stdout(Stdio::null()));
+    let output = stage.drive(&["--corridors", "--patience", "20"]).ends_within(600);
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    let map = stage.path("map.toml");
+    let compared = stage.out(&["compare", "worlds/theta-plane.toml", &map, "--json"]);
+    assert!(compared.contains("\"isomorphic\":true"), "{compared}");
+    let log = stage.path("run.mcap");
+    let judged = stage.out(&["conform", &log, "--world", "worlds/theta-plane.toml"]);
+    assert!(judged.contains("conforms"), "{judged}");
+    drop(robot);
 }
 
 /// The robot reads one of the types of commands; the driver finds out which.

@@ -66,7 +66,16 @@ pub enum RobotError {
     OtherType { topic: String, theirs: String, ours: String },
     #[error("the scanner's frame `{frame}` is not connected to the robot: {cause}")]
     NoMount { frame: String, cause: String },
-    /// `unread` counts the messages of another type.
+    /// The frame of scans changed after the beginning of the run.
+    #[error(
+        "the scans on {topic} are of the frame `{theirs}`; those of the scanner are of `{ours}`"
+    )]
+    OtherFrame { topic: String, theirs: String, ours: String },
+    #[error("the stamps on {topic} went back by {seconds:.1} s")]
+    ClockWentBack { topic: String, seconds: f64 },
+    #[error("the robot does not move: odometry shows nothing of its last {motions} motions")]
+    DoesNotMove { motions: u32 },
+    /// `unread` counts the messages that cannot be read.
     #[error("no message on {topic} for {seconds} s{}", unreadable(*.unread))]
     Silent { topic: String, seconds: f64, unread: u64 },
     #[error("the connection to {topic} is closed")]
@@ -86,6 +95,8 @@ pub enum RobotError {
 fn unreadable(messages: u64) -> String {
     match messages {
         0 => String::new(),
-        messages => format!("; {messages} messages on it have another type"),
+        messages => {
+            format!("; {messages} messages on it have another type, or numbers that are not finite")
+        }
     }
 }

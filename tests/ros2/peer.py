@@ -1,120 +1,30 @@
 """A participant by Cyclone DDS: another implementation of DDS than the one of toposlam.
 
-    peer.py listen FILE          write each message of /odom, /scan and /cmd_vel as a line
-    peer.py publish KIND         publish /odom and a /scan of a kind: twist-type, xcdr2, no-frame, plain
-    peer.py read TWIST           read /cmd_vel as Twist, TwistStamped or both, and publish /odom and /scan
+peer.py listen FILE          write each message of /odom, /scan and /cmd_vel as a line
+peer.py publish KIND         publish /odom and a /scan of a kind: twist-type, xcdr2, no-frame, plain
+peer.py read TWIST           read /cmd_vel as Twist, TwistStamped or both, and publish /odom and /scan
 """
 
-import os
 import sys
 import time
-from dataclasses import dataclass
 
-from cyclonedds.core import Policy, Qos
-from cyclonedds.domain import DomainParticipant
-from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import array, float32, float64, int32, sequence, uint32
-from cyclonedds.pub import DataWriter
-from cyclonedds.sub import DataReader
-from cyclonedds.topic import Topic
-from cyclonedds.util import duration
-
-
-@dataclass
-class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
-    sec: int32
-    nanosec: uint32
-
-
-@dataclass
-class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
-    stamp: Time
-    frame_id: str
-
-
-@dataclass
-class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
-    x: float64
-    y: float64
-    z: float64
-
-
-@dataclass
-class Quaternion(IdlStruct, typename="geometry_msgs::msg::dds_::Quaternion_"):
-    x: float64
-    y: float64
-    z: float64
-    w: float64
-
-
-@dataclass
-class Twist(IdlStruct, typename="geometry_msgs::msg::dds_::Twist_"):
-    linear: Vector3
-    angular: Vector3
-
-
-@dataclass
-class TwistStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TwistStamped_"):
-    header: Header
-    twist: Twist
-
-
-@dataclass
-class Pose(IdlStruct, typename="geometry_msgs::msg::dds_::Pose_"):
-    position: Vector3
-    orientation: Quaternion
-
-
-@dataclass
-class PoseWithCovariance(IdlStruct, typename="geometry_msgs::msg::dds_::PoseWithCovariance_"):
-    pose: Pose
-    covariance: array[float64, 36]
-
-
-@dataclass
-class TwistWithCovariance(IdlStruct, typename="geometry_msgs::msg::dds_::TwistWithCovariance_"):
-    twist: Twist
-    covariance: array[float64, 36]
-
-
-@dataclass
-class Odometry(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
-    header: Header
-    child_frame_id: str
-    pose: PoseWithCovariance
-    twist: TwistWithCovariance
-
-
-@dataclass
-class LaserScan(IdlStruct, typename="sensor_msgs::msg::dds_::LaserScan_"):
-    header: Header
-    angle_min: float32
-    angle_max: float32
-    angle_increment: float32
-    time_increment: float32
-    scan_time: float32
-    range_min: float32
-    range_max: float32
-    ranges: sequence[float32]
-    intensities: sequence[float32]
-
-
-BEST_EFFORT = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Policy.History.KeepLast(10))
-RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.Volatile, Policy.History.KeepLast(10))
-XCDR1 = Policy.DataRepresentation(use_cdrv0_representation=True)
-XCDR2 = Policy.DataRepresentation(use_xcdrv2_representation=True)
-
-participant = DomainParticipant(int(os.environ["ROS_DOMAIN_ID"]))
-
-
-def reader(name, kind, qos=BEST_EFFORT):
-    topic = Topic(participant, "rt" + name, kind, qos=Qos(XCDR1))
-    return DataReader(participant, topic, qos=Qos(*qos, XCDR1))
-
-
-def writer(name, kind, representation=XCDR1):
-    topic = Topic(participant, "rt" + name, kind, qos=Qos(representation))
-    return DataWriter(participant, topic, qos=Qos(*RELIABLE, representation))
+from messages import (
+    XCDR1,
+    XCDR2,
+    Header,
+    LaserScan,
+    Odometry,
+    Pose,
+    PoseWithCovariance,
+    Quaternion,
+    Time,
+    Twist,
+    TwistStamped,
+    TwistWithCovariance,
+    Vector3,
+    reader,
+    writer,
+)
 
 
 def header(frame):

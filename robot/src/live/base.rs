@@ -2,19 +2,22 @@
 
 use std::time::{Duration, Instant};
 
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+
 use super::{
     Wheels,
     messages::{Nanoseconds, Reckoning, SECOND},
+    response::ResponseMeter,
+    scanner::{Scanner, went_back},
     topic::Subscription,
 };
 use crate::{
     robot::{RobotError, Sample, TimedOdometry},
-    superscout::{Base, PERIOD, WheelSpeeds},
+    superscout::{Base, BaseResponse, PERIOD, WheelSpeeds},
 };
 
-/// Delay of a command in seconds, in addition to its period: odometry comes ten times a second,
-/// messages take time, and wheels respond gradually.
-const LAG: f64 = 0.15;
+/// The robot does not move if this many motions in a row are not carried out.
+const STILL: u32 = 3;
 
 /// The longest time for which the stop command is repeated at the end,
 const STOP_TIMEOUT: Duration = Duration::from_secs(1);
@@ -29,14 +32,14 @@ const STANDS_TIME: Nanoseconds = SECOND / 10;
 
 /// Finds out from readings whether a robot stands.
 #[derive(Default)]
-struct Standing {
+pub(super) struct Standing {
     /// The first reading at this place, and the time of the last one.
     since: Option<(Reckoning, Nanoseconds)>,
 }
 
 impl Standing {
     /// Whether a robot stands at a reading. One that goes back in time says nothing.
-    fn is_seen(&mut self, now: Reckoning) -> bool {
+    pub(super) fn is_seen(&mut self, now: Reckoning) -> bool {
         let is_here = |since: &Reckoning| {
             now.at.distance(&since.at) <= STANDS
                 && since.at.seen(now.at.heading).abs() <= STANDS_ANGLE
@@ -68,6 +71,11 @@ pub(super) struct LiveBase {
     /// The time of the robot's time 0.
     epoch: Nanoseconds,
     last: Reckoning,
+    /// When the last odometry came.
+    heard: Instant,
+    /// `None` for a robot without a laser scanner.
+    pub(super) scanner: Option<Scanner>,
+    response: ResponseMeter,
     pub(super) track: Vec<Sample>,
 }
 
@@ -76,12 +84,23 @@ impl LiveBase {
     pub(super) fn new(
         wheels: Box<dyn Wheels>,
         odometry: Subscription<Reckoning>,
+        scanner: Option<Scanner>,
         patience: Duration,
         stop: fn() -> bool,
     ) -> Result<Self, RobotError> {
         let last = odometry.wait(patience, stop, Some)?;
-        let epoch = last.stamp;
-        let mut base = Self { wheels, odometry, patience, stop, epoch, last, track: Vec::new() };
+        let mut base = Self {
+            wheels,
+            odometry,
+            patience,
+            stop,
+            epoch: last.stamp,
+            last,
+            heard: Instant::now(),
+            scanner,
+            response: ResponseMeter::default(),
+            track: Vec::new(),
+        };
         base.sample(WheelSpeeds::STOP);
         Ok(base)
     }
@@ -101,10 +120,33 @@ impl LiveBase {
 
     /// The present odometry, if it comes.
     pub(super) fn read(&mut self) {
-        if let Some(now) = self.odometry.take().filter(|now| now.stamp > self.last.stamp) {
-            self.last = now;
+        if self.hear().is_some() {
             self.sample(WheelSpeeds::STOP);
         }
+    }
+
+    /// The stamp of the last odometry, also of one that was not used yet.
+    pub(super) fn stamp(&self) -> Nanoseconds {
+        self.odometry.peek(|now| now.stamp).unwrap_or_default().max(self.last.stamp)
+    }
+
+    /// # Errors
+    /// Returns an error if odometry has not come for too long.
+    pub(super) fn check_odometry(&mut self) -> Result<(), RobotError> {
+        self.hear();
+        if self.heard.elapsed() > self.patience {
+            return Err(self.odometry.silent(self.patience));
+        }
+        Ok(())
+    }
+
+    /// Takes the last odometry, if it is newer.
+    fn hear(&mut self) -> Option<Reckoning> {
+        let (now, heard) = self.odometry.take_timed()?;
+        (now.stamp > self.last.stamp).then(|| {
+            (self.last, self.heard) = (now, heard);
+            now
+        })
     }
 
     fn sample(&mut self, wheels: WheelSpeeds) {
@@ -112,24 +154,53 @@ impl LiveBase {
         self.track.push(Sample { speed, turning, reading: self.reading() });
     }
 
+    /// Where the robot was at a time, by its track.
+    fn pose(&self, stamp: Nanoseconds) -> Odometry {
+        let time = self.seconds(stamp);
+        let after = self.track.partition_point(|sample| sample.reading.time <= time);
+        let before = self.track[..after].last().or(self.track.first());
+        let [before, after] = [before, self.track.get(after)].map(|s| s.map(|s| s.reading));
+        match (before, after) {
+            (Some(before), Some(after)) if before.time < time => {
+                let part = (time - before.time) / (after.time - before.time);
+                let (from, to) = (before.odometry, after.odometry);
+                let position = [0, 1].map(|axis| {
+                    from.position[axis] + part * (to.position[axis] - from.position[axis])
+                });
+                let heading = wrapped(from.heading + part * wrapped(to.heading - from.heading));
+                Odometry { position, heading }
+            }
+            (Some(at), _) | (None, Some(at)) => at.odometry,
+            (None, None) => self.last.at,
+        }
+    }
+
     /// Sets the wheel speeds and waits until the period is over; after a stop, until the robot
-    /// stands.
+    /// stands. The robot moves only while odometry and scans come.
     fn command(&mut self, wheels: WheelSpeeds) -> Result<(), RobotError> {
         if (self.stop)() {
             return Err(RobotError::Stopped);
         }
         // The period begins now, not at the last odometry.
-        let last = self.odometry.take().filter(|now| now.stamp > self.last.stamp);
-        let begun = last.unwrap_or(self.last).stamp;
+        let last = self.hear();
+        let stopping = wheels == WheelSpeeds::STOP;
+        if !stopping {
+            self.check_odometry()?;
+            if let Some(scanner) = &mut self.scanner {
+                scanner.update(self.patience)?;
+            }
+        }
+        let before = self.reading();
+        let begun = self.last.stamp;
         let mut standing = Standing::default();
         if let Some(last) = last {
             standing.is_seen(last);
         }
         self.wheels.command(wheels)?;
         let over = begun + (PERIOD * SECOND as f64) as Nanoseconds;
-        let mut moves = false;
-        let stopping = wheels == WheelSpeeds::STOP;
+        let (mut moves, mut back) = (false, 0);
         let arrived = |now: Reckoning| {
+            back = begun.saturating_sub(now.stamp);
             let stood = now.stamp > begun && standing.is_seen(now);
             moves = stopping && now.stamp >= over && !stood;
             (now.stamp >= over && (!stopping || stood)).then_some(now)
@@ -138,9 +209,15 @@ impl LiveBase {
         let seconds = self.patience.as_secs_f64();
         self.last = now.map_err(|error| match error {
             RobotError::Silent { .. } if moves => RobotError::StillMoving { seconds },
+            RobotError::Silent { topic, .. } if back > 0 => went_back(&topic, back),
             error => error,
         })?;
+        self.heard = Instant::now();
         self.sample(wheels);
+        self.response.add(wheels, before, self.reading());
+        if self.response.still() >= STILL {
+            return Err(RobotError::DoesNotMove { motions: STILL });
+        }
         Ok(())
     }
 }
@@ -160,13 +237,15 @@ impl Base for LiveBase {
         TimedOdometry { time: self.seconds(self.last.stamp), odometry: self.last.at }
     }
 
-    fn lag(&self) -> f64 {
-        LAG
+    fn response(&self) -> BaseResponse {
+        self.response.response()
     }
 
-    /// The live robot's sonars are not used.
-    fn sonar(&self, _: usize) -> f64 {
-        f64::INFINITY
+    /// By the last scan. A robot with a camera has only what Algorithm 2 sees.
+    fn room(&self) -> f64 {
+        let Some(scanner) = &self.scanner else { return f64::INFINITY };
+        let then = scanner.stamp().map_or(self.last.at, |stamp| self.pose(stamp));
+        scanner.room(&then, &self.last.at)
     }
 }
 

@@ -6,7 +6,11 @@
 
 mod base;
 pub(crate) mod messages;
+#[cfg(test)]
+mod motion_tests;
+mod response;
 mod robot;
+mod scanner;
 pub(crate) mod topic;
 
 use std::time::Duration;
@@ -20,6 +24,7 @@ use crate::{robot::RobotError, superscout::WheelSpeeds};
 pub use messages::{Nanoseconds, Reckoning, SECOND};
 pub(crate) use robot::{Connection, SensorTopics};
 pub use robot::{LiveRobot, LiveSensor};
+pub(crate) use scanner::ScanTopic;
 
 /// The longest time until nodes have found each other.
 pub(crate) const FIRST: Duration = Duration::from_secs(10);

@@ -1,14 +1,18 @@
 //! A live robot behind topics. Section 2.5.
 
-use std::{any::Any, sync::Arc, time::Duration};
+use std::{
+    any::Any,
+    time::{Duration, Instant},
+};
 
-use toposlam_logs::{Mount, record::Frame};
+use toposlam_logs::record::Frame;
 use toposlam_model::driving::scene::MarkerView;
 
 use super::{
     FIRST, Wheels,
     base::LiveBase,
-    messages::{Nanoseconds, Reckoning, ScanReading, SentImage, Stamped},
+    messages::{Nanoseconds, Reckoning, SentImage, Stamped},
+    scanner::{ScanTopic, Scanner},
     topic::Subscription,
 };
 use crate::{
@@ -28,7 +32,7 @@ pub struct LiveRobot {
     // The fields are dropped in this order. The node is last, because the wheels are stopped
     // through it.
     base: LiveBase,
-    sensor: SensorTopics,
+    messages: SensorMessages,
     asked: u64,
     _node: Box<dyn Any>,
 }
@@ -43,12 +47,13 @@ pub enum LiveSensor {
 
 pub(crate) enum SensorTopics {
     Camera(Subscription<Stamped<SentImage>>),
-    Laser {
-        scans: Subscription<Stamped<ScanReading>>,
-        /// Where the scanner is on the robot.
-        mount: Mount,
-        markers: Subscription<Stamped<MarkerView>>,
-    },
+    Laser { scans: ScanTopic, markers: Subscription<Stamped<MarkerView>> },
+}
+
+/// What is read of a sensor besides the scans, which belong to the base.
+enum SensorMessages {
+    Images(Subscription<Stamped<SentImage>>),
+    Markers(Subscription<Stamped<MarkerView>>),
 }
 
 /// The topics of a robot, and the node to which they belong.
@@ -74,13 +79,21 @@ impl LiveRobot {
     ) -> Result<Self, RobotError> {
         let Connection { wheels, odometry, sensor, node } = connection;
         let first = patience.max(FIRST);
-        let mut base = LiveBase::new(wheels, odometry, first, stop)?;
-        match &sensor {
-            SensorTopics::Camera(images) => images.wait(first, stop, |_| Some(()))?,
-            SensorTopics::Laser { scans, .. } => scans.wait(first, stop, |_| Some(()))?,
+        let (messages, scanner) = match sensor {
+            SensorTopics::Camera(images) => (SensorMessages::Images(images), None),
+            SensorTopics::Laser { scans, markers } => {
+                (SensorMessages::Markers(markers), Some(Scanner::new(scans)))
+            }
+        };
+        let mut base = LiveBase::new(wheels, odometry, scanner, first, stop)?;
+        if let SensorMessages::Images(images) = &messages {
+            images.wait(first, stop, |_| Some(()))?;
+        }
+        if let Some(scanner) = &mut base.scanner {
+            scanner.wait(first, stop, Some)?;
         }
         base.patience = patience;
-        Ok(Self { base, sensor, asked: 0, _node: node })
+        Ok(Self { base, messages, asked: 0, _node: node })
     }
 
     /// The number of images or scans that were requested.
@@ -90,39 +103,36 @@ impl LiveRobot {
 
     fn frame(&mut self) -> Result<Frame, RobotError> {
         let TimedOdometry { time: ended, odometry } = self.base.reading();
-        let id = self.asked;
+        let (id, patience, stop) = (self.asked, self.base.patience, self.base.stop);
         let mut behind = None;
+        let mut scanner = self.base.scanner.take();
         let base = &self.base;
         let mut is_fresh = |stamp: Nanoseconds| {
             let taken = base.seconds(stamp);
             behind = Some(ended - taken);
             (taken > ended).then_some(Frame { id, taken, odometry, ..Frame::default() })
         };
-        let frame = match &self.sensor {
-            SensorTopics::Camera(images) => {
-                images.wait(base.patience, base.stop, |Stamped { stamp, content }| {
+        let frame = match (&self.messages, &mut scanner) {
+            (SensorMessages::Images(images), _) => {
+                images.wait(patience, stop, |Stamped { stamp, content }| {
                     let fresh = is_fresh(stamp)?;
                     Some(Frame { image: Some(content.file()?), ..fresh })
                 })
             }
-            SensorTopics::Laser { scans, mount, markers } => {
-                let scanned = scans.wait(base.patience, base.stop, |Stamped { stamp, content }| {
-                    let fresh = is_fresh(stamp)?;
-                    Some(Frame { scan: Some(Arc::new(content.scan(mount)?)), ..fresh })
-                });
-                // The marker is reported only where it is seen.
-                scanned.and_then(|frame| {
-                    let seen = |Stamped { stamp, content }| {
-                        (base.seconds(stamp) > ended).then_some(content)
-                    };
-                    match markers.wait(MARKER_DELAY, base.stop, seen) {
-                        Ok(marker) => Ok(Frame { marker: Some(marker), ..frame }),
-                        Err(RobotError::Silent { .. }) => Ok(frame),
-                        Err(error) => Err(error),
-                    }
+            (SensorMessages::Markers(markers), Some(scanner)) => {
+                let scanned = scanner.wait(patience, stop, &mut is_fresh);
+                scanned.and_then(|(frame, scan)| {
+                    let marker = seen_marker(base, markers, ended, frame.taken)?;
+                    Ok(Frame { scan: Some(scan), marker, ..frame })
                 })
             }
+            (SensorMessages::Markers(_), None) => Err(RobotError::NoImage),
         };
+        self.base.scanner = scanner;
+        if frame.is_err() {
+            // A robot that is gone sends nothing at all.
+            self.base.check_odometry()?;
+        }
         frame.map_err(|error| match (error, behind) {
             (RobotError::Silent { .. }, Some(behind)) => RobotError::StaleImage { behind },
             (RobotError::Silent { .. }, None) => RobotError::NoImage,
@@ -131,7 +141,32 @@ impl LiveRobot {
     }
 }
 
-/// A marker that was seen with a scan is reported within this time after it.
+/// The marker, if it is reported with the scan of this time, after the end of the last motion. It is reported only where
+/// it is seen, so that odometry says when it is too late.
+fn seen_marker(
+    base: &LiveBase,
+    markers: &Subscription<Stamped<MarkerView>>,
+    ended: f64,
+    taken: f64,
+) -> Result<Option<MarkerView>, RobotError> {
+    let until = Instant::now() + MARKER_DELAY;
+    loop {
+        // Both are looked up before the marker.
+        let is_late = Instant::now() >= until
+            || base.seconds(base.stamp()) > taken + MARKER_DELAY.as_secs_f64();
+        let seen = |Stamped { stamp, content }| (base.seconds(stamp) > ended).then_some(content);
+        match markers.wait(if is_late { Duration::ZERO } else { LOOK }, base.stop, seen) {
+            Ok(marker) => return Ok(Some(marker)),
+            Err(RobotError::Silent { .. }) if is_late => return Ok(None),
+            Err(RobotError::Silent { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// Interval of looks at odometry while a marker may come.
+const LOOK: Duration = Duration::from_millis(2);
+/// A marker that was seen with a scan is reported within this time after it, by the clock of the robot.
 const MARKER_DELAY: Duration = Duration::from_millis(250);
 
 impl Robot for LiveRobot {

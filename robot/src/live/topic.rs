@@ -21,7 +21,7 @@ impl<T> Inbox<T> {
     /// Keeps a message; `None` is one that cannot be read.
     pub(crate) fn add(&self, message: Option<T>) {
         self.0.update(|last| match message {
-            Some(message) => last.message = Some(message),
+            Some(message) => last.message = Some((message, Instant::now())),
             None => last.unread += 1,
         });
     }
@@ -54,7 +54,8 @@ struct Shared<T> {
 
 #[derive(Debug)]
 struct Last<T> {
-    message: Option<T>,
+    /// With the time at which it came.
+    message: Option<(T, Instant)>,
     /// The number of messages that could not be read.
     unread: u64,
     closed: bool,
@@ -78,7 +79,27 @@ const STOP_INTERVAL: Duration = Duration::from_millis(20);
 impl<T> Subscription<T> {
     /// Takes the last message, if it was not taken yet.
     pub(crate) fn take(&self) -> Option<T> {
+        self.take_timed().map(|(message, _)| message)
+    }
+
+    /// The same, and when it came.
+    pub(crate) fn take_timed(&self) -> Option<(T, Instant)> {
         self.shared.last().message.take()
+    }
+
+    /// What the last message shows, if it was not taken yet.
+    pub(crate) fn peek<W>(&self, seen: impl FnOnce(&T) -> W) -> Option<W> {
+        self.shared.last().message.as_ref().map(|(message, _)| seen(message))
+    }
+
+    pub(crate) fn topic(&self) -> &str {
+        &self.topic
+    }
+
+    /// The error that no message came for this time.
+    pub(crate) fn silent(&self, patience: Duration) -> RobotError {
+        let (seconds, unread) = (patience.as_secs_f64(), self.shared.last().unread);
+        RobotError::Silent { topic: self.topic.clone(), seconds, unread }
     }
 
     /// Waits for messages until `wanted` accepts one.
@@ -98,17 +119,16 @@ impl<T> Subscription<T> {
             if stop() {
                 return Err(RobotError::Stopped);
             }
-            if let Some(found) = last.message.take().and_then(&mut wanted) {
+            if let Some(found) = last.message.take().and_then(|(message, _)| wanted(message)) {
                 return Ok(found);
             }
-            let topic = || self.topic.clone();
             if last.closed {
-                return Err(RobotError::Closed { topic: topic() });
+                return Err(RobotError::Closed { topic: self.topic.clone() });
             }
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {
-                let (seconds, unread) = (patience.as_secs_f64(), last.unread);
-                return Err(RobotError::Silent { topic: topic(), seconds, unread });
+                drop(last);
+                return Err(self.silent(patience));
             }
             let waited = self.shared.news.wait_timeout(last, left.min(STOP_INTERVAL));
             last = waited.unwrap_or_else(PoisonError::into_inner).0;

@@ -19,8 +19,8 @@ use toposlam_vision::laser::scan::Scan;
 use self::node::{Node, Publisher};
 use crate::{
     live::{
-        Connection, LiveRobot, LiveSensor, Nanoseconds, Reckoning, RobotTopics, SensorTopics,
-        ServedRobot, Wheels, topic::Subscription,
+        Connection, LiveRobot, LiveSensor, Nanoseconds, Reckoning, RobotTopics, ScanTopic,
+        SensorTopics, ServedRobot, Wheels, topic::Subscription,
     },
     robot::RobotError,
     superscout::WheelSpeeds,
@@ -48,8 +48,11 @@ pub fn connect(
             SensorTopics::Camera(node.subscribe(&topics.images, messages::read_image)?)
         }
         LiveSensor::Laser => SensorTopics::Laser {
-            scans: node.subscribe(&topics.scans, messages::read_scan)?,
-            mount: Mount::centre(),
+            scans: ScanTopic {
+                scans: node.subscribe(&topics.scans, messages::read_scan)?,
+                frame: None,
+                mount: Mount::centre(),
+            },
             markers: node.subscribe(&topics.marker, messages::read_marker)?,
         },
     };

@@ -43,7 +43,7 @@ use self::{
 };
 use crate::{
     live::{
-        Connection, FIRST, LiveRobot, LiveSensor, Nanoseconds, Reckoning, RobotTopics,
+        Connection, FIRST, LiveRobot, LiveSensor, Nanoseconds, Reckoning, RobotTopics, ScanTopic,
         SensorTopics, ServedRobot,
         messages::{ScanReading, Stamped},
         topic::Subscription,
@@ -109,10 +109,10 @@ pub fn connect(
             let kind = <LaserScanMessage<&[f32]> as Message>::TYPE;
             published(&topics.scans, kind)?;
             let scans = node.subscribe(&topics.scans, kind, messages::read_scan)?;
-            let mount = scanner_mount(&node, &scans, stop)?;
+            let (frame, mount) = scanner_mount(&node, &scans, stop)?;
             let kind = <PoseStamped as Message>::TYPE;
             let markers = node.subscribe(&topics.marker, kind, messages::read_marker)?;
-            SensorTopics::Laser { scans, mount, markers }
+            SensorTopics::Laser { scans: ScanTopic { scans, frame: Some(frame), mount }, markers }
         }
     };
     let clock = if sim_time { simulated_clock(&node, stop)? } else { StampClock::System };
@@ -195,12 +195,12 @@ fn wheels_type_of(
     Ok(kind.unwrap_or(WheelsType::Twist))
 }
 
-/// Where the scanner of a topic is on the robot, by its transforms.
+/// The frame of the scanner of a topic, and where it is on the robot, by its transforms.
 fn scanner_mount(
     node: &DdsNode,
     scans: &Subscription<Stamped<ScanReading>>,
     stop: fn() -> bool,
-) -> Result<Mount, RobotError> {
+) -> Result<(String, Mount), RobotError> {
     let frames = Arc::new(Mutex::new(FrameTree::default()));
     for (topic, stays) in [(recorder::TF_STATIC, true), (recorder::TF, false)] {
         // When the scanner's place is known, no more transforms are kept.
@@ -221,7 +221,7 @@ fn scanner_mount(
         let found = frames.lock().unwrap_or_else(PoisonError::into_inner).scanner_mount(&frame);
         let no_mount = |cause: String| RobotError::NoMount { frame: frame.clone(), cause };
         match found {
-            Ok(Some(mount)) => return Ok(mount),
+            Ok(Some(mount)) => return Ok((frame, mount)),
             Err(cause) => return Err(no_mount(cause)),
             Ok(None) if Instant::now() > until => {
                 let cause = format!(

@@ -4,7 +4,7 @@ mod drive;
 mod odometer;
 mod wheels;
 
-pub use drive::{Base, Drive};
+pub use drive::{Base, BaseResponse, Drive};
 pub use odometer::{Odometer, along_arc};
 pub use wheels::WheelSpeeds;
 
