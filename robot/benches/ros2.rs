@@ -19,7 +19,7 @@ use toposlam_model::driving::{odometry::Odometry, scene::MarkerView};
 use toposlam_robot::{
     live::{LiveSensor, Nanoseconds, Reckoning, RobotTopics, SECOND, ServedRobot},
     robot::Robot,
-    ros2::{DomainTopics, RobotDomain, WheelsType, connect},
+    ros2::{DomainTopics, DriveSettings, RobotDomain, WheelsType, connect},
     superscout::{WheelSpeeds, along_arc},
 };
 use toposlam_vision::laser::scan::{Scan, ScanGeometry};
@@ -43,7 +43,7 @@ fn main() {
 }
 
 fn domain(name: &str) -> RobotDomain {
-    RobotDomain { number: 111, namespace: name.to_owned(), network: false }
+    RobotDomain { number: 111, namespace: name.to_owned(), network: false, distro: None }
 }
 
 fn measure() {
@@ -129,8 +129,15 @@ fn stamp() -> Nanoseconds {
 /// Turns a little after each scan, and prints how busy it was, in percent.
 fn drive(domain: &RobotDomain) {
     let topics = RobotTopics::default();
-    let patience = Duration::from_secs(2);
-    let mut robot = connect(domain, &topics, LiveSensor::Laser, None, patience, || false).unwrap();
+    let settings = DriveSettings {
+        sensor: LiveSensor::Laser,
+        wheels_type: None,
+        sim_time: false,
+        patience: Duration::from_secs(2),
+        stop: || false,
+        abort: || {},
+    };
+    let (mut robot, _run) = connect(domain, &topics, &settings).unwrap();
     let mut sensor = RobotSensor::Laser(Box::default());
     let (begun, busy) = (Instant::now(), processor_time());
     let mut angle = 0.1;

@@ -181,22 +181,27 @@ impl LiveBase {
         if (self.stop)() {
             return Err(RobotError::Stopped);
         }
-        // The period begins now, not at the last odometry.
-        let last = self.hear();
         let stopping = wheels == WheelSpeeds::STOP;
-        if !stopping {
-            self.check_odometry()?;
-            if let Some(scanner) = &mut self.scanner {
-                scanner.update(self.patience)?;
+        let (begun, before, mut standing) = loop {
+            if !stopping {
+                self.wheels.wait()?;
             }
-        }
-        let before = self.reading();
-        let begun = self.last.stamp;
-        let mut standing = Standing::default();
-        if let Some(last) = last {
-            standing.is_seen(last);
-        }
-        self.wheels.command(wheels)?;
+            // The period begins now, not at the last odometry.
+            let last = self.hear();
+            if !stopping {
+                self.check_odometry()?;
+                if let Some(scanner) = &mut self.scanner {
+                    scanner.update(self.patience)?;
+                }
+            }
+            let mut standing = Standing::default();
+            if let Some(last) = last {
+                standing.is_seen(last);
+            }
+            if self.wheels.command(wheels)? {
+                break (self.last.stamp, self.reading(), standing);
+            }
+        };
         let over = begun + (PERIOD * SECOND as f64) as Nanoseconds;
         let (mut moves, mut back) = (false, 0);
         let arrived = |now: Reckoning| {

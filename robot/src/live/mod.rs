@@ -59,7 +59,13 @@ impl Default for RobotTopics {
 
 /// The topic of the commands to the wheels.
 pub(crate) trait Wheels {
-    fn command(&self, wheels: WheelSpeeds) -> Result<(), RobotError>;
+    /// Waits until the wheels may move.
+    fn wait(&self) -> Result<(), RobotError> {
+        Ok(())
+    }
+
+    /// Sends a command, and returns whether it did: while the wheels may not move, only a stop is sent.
+    fn command(&self, wheels: WheelSpeeds) -> Result<bool, RobotError>;
 }
 
 /// A simulated robot behind topics. Messages with a header are numbered.

@@ -62,8 +62,8 @@ pub fn connect(
 }
 
 impl Wheels for Publisher {
-    fn command(&self, wheels: WheelSpeeds) -> Result<(), RobotError> {
-        self.publish(&messages::twist(wheels))
+    fn command(&self, wheels: WheelSpeeds) -> Result<bool, RobotError> {
+        self.publish(&messages::twist(wheels)).map(|()| true)
     }
 }
 

@@ -111,23 +111,26 @@ impl WheelsTopic {
 }
 
 impl Wheels for Arc<WheelsTopic> {
-    /// During a pause, a command to move waits until it is over, or the run is to stop.
-    fn command(&self, wheels: WheelSpeeds) -> Result<(), RobotError> {
+    fn wait(&self) -> Result<(), RobotError> {
         let mut cause = self.cause();
-        loop {
-            match &*cause {
-                _ if wheels == WheelSpeeds::STOP => return self.publish(wheels),
-                StandstillCause::None => return self.publish(wheels),
-                StandstillCause::Hazard(hazard) => return Err(hazard.clone()),
-                StandstillCause::Pause => {
-                    if (self.stop)() {
-                        return Err(RobotError::Stopped);
-                    }
-                    self.publish(WheelSpeeds::STOP)?;
-                    let waited = self.standstill.over.wait_timeout(cause, REPEAT);
-                    cause = waited.unwrap_or_else(PoisonError::into_inner).0;
-                }
+        while matches!(*cause, StandstillCause::Pause) {
+            if (self.stop)() {
+                return Err(RobotError::Stopped);
             }
+            self.publish(WheelSpeeds::STOP)?;
+            let waited = self.standstill.over.wait_timeout(cause, REPEAT);
+            cause = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+        Ok(())
+    }
+
+    fn command(&self, wheels: WheelSpeeds) -> Result<bool, RobotError> {
+        // Nobody pauses the run until the command is sent.
+        let cause = self.cause();
+        match &*cause {
+            StandstillCause::Hazard(hazard) if wheels != WheelSpeeds::STOP => Err(hazard.clone()),
+            StandstillCause::Pause if wheels != WheelSpeeds::STOP => Ok(false),
+            _ => self.publish(wheels).map(|()| true),
         }
     }
 }
