@@ -25,6 +25,9 @@ pub struct RecordedEvents {
     left: Option<(Odometry, usize, f64)>,
     /// The hallway since the last arrival.
     hallway: Option<MeasuredHallway>,
+    /// Whether the robot drives into arms before it reports where it is, as in a network of corridors: then its last way is
+    /// not that by which it came.
+    drives_into_arms: bool,
 }
 
 impl RecordedEvents {
@@ -66,6 +69,7 @@ impl RecordedEvents {
     }
 
     fn arrived(&mut self, source: EventSource, arrival: Arrival) {
+        self.drives_into_arms |= arrival.shape.is_none() && arrival.degree > 1;
         let now = self.way.back();
         let came_from = if self.events.is_empty() {
             // At the start the robot stands with its back to the entry door.
@@ -75,9 +79,10 @@ impl RecordedEvents {
             let far_enough = ends.filter(|(from, now)| from.distance(now) >= FAR_ENOUGH);
             far_enough.map(|(from, now)| geometry::direction(now.position, from.position))
         };
-        let entry_off =
-            arrival.entry.zip(came_from).map(|(entry, from)| wrapped(entry - from).abs());
-        let hallway = self.hallway.take().and_then(|hallway| hallway.measured(arrival.entry));
+        let entry_off = arrival.entry.zip(came_from).filter(|_| !self.drives_into_arms);
+        let entry_off = entry_off.map(|(entry, from)| wrapped(entry - from).abs());
+        let hallway = self.hallway.take().filter(|_| !self.drives_into_arms);
+        let hallway = hallway.and_then(|hallway| hallway.measured(arrival.entry));
         self.hallway = Some(MeasuredHallway::from(now.copied()));
         let kind = CheckedKind::Arrival { arrival, entry_off, hallway };
         self.events.push(CheckedEvent { source, kind });
@@ -141,6 +146,25 @@ mod tests {
         let CheckedKind::Door { off, .. } = events[1].kind else { panic!("{events:?}") };
         let CheckedKind::Arrival { entry_off, .. } = events[2].kind else { panic!("{events:?}") };
         (off, entry_off)
+    }
+
+    /// In a network of corridors a junction has no shape of right angles.
+    #[test]
+    fn a_robot_that_drives_into_arms_is_not_accused_of_the_way_to_the_place_where_it_was_before() {
+        let mut recorded = RecordedEvents::default();
+        let mut observe = |kind| recorded.observe(EventSource::default(), &kind);
+        let at = |x| EventKind::Odometry(Odometry { position: [x, 0.0], heading: 0.0 });
+        let sighting = Some(Sighting::Nothing);
+        let junction =
+            Arrival { number: Some(0), degree: 3, sighting, shape: None, entry: Some(PI) };
+        observe(EventKind::Arrival(junction));
+        observe(EventKind::Door { number: Some(1), door: Door(1) });
+        // It came from the west, and was at last in the arm to the east.
+        [0.0, 30.0, 20.0].into_iter().for_each(|x| observe(at(x)));
+        observe(EventKind::Arrival(Arrival { number: Some(1), ..junction }));
+        let last = recorded.finish().pop().unwrap();
+        let CheckedKind::Arrival { entry_off, hallway, .. } = last.kind else { panic!("{last:?}") };
+        assert_eq!((entry_off, hallway), (None, None));
     }
 
     #[test]
