@@ -160,7 +160,9 @@ mod tests {
         observe(EventKind::Arrival(junction));
         observe(EventKind::Door { number: Some(1), door: Door(1) });
         // It came from the west, and was at last in the arm to the east.
-        [0.0, 30.0, 20.0].into_iter().for_each(|x| observe(at(x)));
+        for x in [0.0, 30.0, 20.0] {
+            observe(at(x));
+        }
         observe(EventKind::Arrival(Arrival { number: Some(1), ..junction }));
         let last = recorded.finish().pop().unwrap();
         let CheckedKind::Arrival { entry_off, hallway, .. } = last.kind else { panic!("{last:?}") };
