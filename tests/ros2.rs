@@ -301,7 +301,11 @@ fn what_is_missing_or_of_another_type_is_said() {
 #[test]
 fn of_two_robots_on_the_same_topics_none_is_driven() {
     let stage = Stage::new("two");
-    let robots = [stage.simulate(&[]), stage.simulate(&[])];
+    let robots = [(); 2].map(|()| {
+        let robot = stage.simulate(&[]);
+        until("a robot is there", 30, || stage.lines("robot", "A simulated robot").len() == 1);
+        robot
+    });
     let output = stage.drive(&[]).ends_within(60);
     drop(robots);
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));

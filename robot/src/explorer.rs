@@ -29,7 +29,7 @@ use crate::{
     run_settings::RunSettings,
 };
 
-pub use error::ExplorerError;
+pub use error::{CorridorFailure, ExplorerError};
 use obstacle::{DEAD_END, Stall, turning_point};
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -37,7 +37,7 @@ const OTHERS: [(&str, &str); 11] = [
     ("counterexample", "--out-dir --html --report --report --atlas --hosts"),
     ("proofs", "--report"),
     ("simulate", "--calibration --colours --scanner"),
-    ("drive", "--log --map --calibration --colours"),
+    ("drive", "--log --map --calibration --colours --laser-params"),
     ("draw", "--calibration"),
     ("camera calibrate", "--initial"),
     ("camera train", "--images --labels --calibration"),

@@ -11,7 +11,6 @@ mod trail;
 
 use std::{
     f64::consts::{PI, TAU},
-    fmt,
     sync::Arc,
 };
 
@@ -44,36 +43,12 @@ use toposlam_vision::{
 use crate::{
     budget::{Allowance, Spent},
     event_log::EventLog,
-    explorer::{Budgeted, ExplorerError, RETAKES, ending},
+    explorer::{Budgeted, CorridorFailure, ExplorerError, RETAKES, ending},
     robot::{Robot, RobotError},
     run_settings::RunSettings,
 };
 pub use params::CorridorParams;
 use trail::Trail;
-
-/// Why a robot does not know at which junction it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CorridorFailure {
-    /// It has not come to a junction yet.
-    Missed,
-    /// The number of doors is undecided.
-    Undecided,
-    /// The door by which it left is that of an alcove.
-    Alcove,
-    /// The way is too long.
-    TooFar,
-}
-
-impl fmt::Display for CorridorFailure {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        out.write_str(match self {
-            Self::Missed => "no junction is seen",
-            Self::Undecided => "the number of doors is undecided",
-            Self::Alcove => "the door is that of an alcove",
-            Self::TooFar => "the run takes too long",
-        })
-    }
-}
 
 /// A robot that explores a network of corridors. Directions are those of the frame of odometry.
 #[derive(Clone, Debug)]

@@ -7,7 +7,7 @@ use toposlam_model::{
     percept::Door,
 };
 
-use crate::{budget::BudgetLimit, corridors::CorridorFailure, robot::RobotError};
+use crate::{budget::BudgetLimit, robot::RobotError};
 
 /// Why a run ended early. Moves are counted from 1; 0 is the start.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -35,6 +35,22 @@ pub enum ExplorerError {
     /// The user or an observer stopped the run.
     #[error("the run was ended on move {moves}")]
     Stopped { moves: u64 },
+}
+
+/// Why a robot in a network of corridors does not know at which junction it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum CorridorFailure {
+    /// It has not come to a junction yet.
+    #[error("no junction is seen")]
+    Missed,
+    #[error("the number of doors is undecided")]
+    Undecided,
+    /// It is that by which it left.
+    #[error("the door is that of an alcove")]
+    Alcove,
+    /// The way is too long.
+    #[error("the run takes too long")]
+    TooFar,
 }
 
 impl ExplorerError {
