@@ -60,6 +60,8 @@ pub use run_topics::RunTopics;
 /// The types of images: files, and pixels.
 const IMAGES: [&str; 2] =
     [<CompressedImage<FileBytes> as Message>::TYPE, <RawImage<FileBytes> as Message>::TYPE];
+/// All nodes of a domain have found each other within this time, on one machine.
+const ALL_FOUND: Duration = Duration::from_secs(3);
 /// Static transforms are sent to late nodes within this time.
 const TRANSFORMS: Duration = Duration::from_secs(6);
 
@@ -89,6 +91,7 @@ pub fn connect(
     topics: &RobotTopics,
     settings: &DriveSettings,
 ) -> Result<(LiveRobot, RunTopics), RobotError> {
+    let begun = Instant::now();
     let DriveSettings { sensor, wheels_type, sim_time, patience, stop, abort } = *settings;
     let node = Arc::new(DdsNode::new(domain)?);
     let published = |topic: &str, kind| {
@@ -116,6 +119,9 @@ pub fn connect(
         }
     };
     let clock = if sim_time { simulated_clock(&node, stop)? } else { StampClock::System };
+    // Another robot on these topics may have been found later.
+    sleep(ALL_FOUND.saturating_sub(begun.elapsed()));
+    published(&topics.odometry, odometry_type)?;
     let wheels_type = match wheels_type {
         Some(given) => given,
         None => wheels_type_of(&node, &topics.wheels, stop)?,
