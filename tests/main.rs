@@ -5,8 +5,6 @@
 mod architecture;
 mod atlas;
 mod browser;
-#[allow(dead_code, reason = "other programs use it")]
-mod camera_files;
 mod command_line;
 mod conform_page;
 mod docs;

@@ -7,6 +7,7 @@
 #![cfg(all(feature = "ros1", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "ros1/camera_files.rs"]
 mod camera_files;
 #[allow(dead_code, reason = "other programs use the rest")]
 mod output;

@@ -7,6 +7,7 @@
 #![cfg(all(feature = "ros2", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "ros1/camera_files.rs"]
 mod camera_files;
 #[path = "ros2/fastdds.rs"]
 mod fastdds;

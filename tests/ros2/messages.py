@@ -117,7 +117,9 @@ class PoseStamped(IdlStruct, typename="geometry_msgs::msg::dds_::PoseStamped_"):
 
 
 BEST_EFFORT = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Policy.History.KeepLast(10))
-RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.Volatile, Policy.History.KeepLast(10))
+RELIABLE = Qos(
+    Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.Volatile, Policy.History.KeepLast(10)
+)
 STAYS = Qos(
     Policy.Reliability.Reliable(duration(seconds=1)),
     Policy.Durability.TransientLocal,
@@ -129,11 +131,14 @@ XCDR2 = Policy.DataRepresentation(use_xcdrv2_representation=True)
 participant = DomainParticipant(int(os.environ["ROS_DOMAIN_ID"]))
 
 
-def reader(name: str, kind: type[IdlStruct], qos: Qos = BEST_EFFORT) -> DataReader:
-    topic = Topic(participant, "rt" + name, kind, qos=Qos(XCDR1))
+def reader(name: str, kind: type[IdlStruct], qos: Qos = BEST_EFFORT, prefix: str = "rt") -> DataReader:
+    """A reader of a topic; the prefix of requests is rq, that of replies rr."""
+    topic = Topic(participant, prefix + name, kind, qos=Qos(XCDR1))
     return DataReader(participant, topic, qos=Qos(*qos, XCDR1))
 
 
-def writer(name: str, kind: type[IdlStruct], representation: Policy = XCDR1, qos: Qos = RELIABLE) -> DataWriter:
-    topic = Topic(participant, "rt" + name, kind, qos=Qos(representation))
+def writer(
+    name: str, kind: type[IdlStruct], representation: Policy = XCDR1, qos: Qos = RELIABLE, prefix: str = "rt"
+) -> DataWriter:
+    topic = Topic(participant, prefix + name, kind, qos=Qos(representation))
     return DataWriter(participant, topic, qos=Qos(*qos, representation))

@@ -85,7 +85,9 @@ def main(verb, what):
     elif verb == "publish":
         publish(what)
     else:
-        publish("plain", {"Twist": [Twist], "TwistStamped": [TwistStamped], "both": [Twist, TwistStamped]}[what])
+        publish(
+            "plain", {"Twist": [Twist], "TwistStamped": [TwistStamped], "both": [Twist, TwistStamped]}[what]
+        )
 
 
 if __name__ == "__main__":

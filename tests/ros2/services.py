@@ -1,10 +1,10 @@
 """A participant by Cyclone DDS that reads what a run publishes, and calls its services as rmw_cyclonedds does.
 
-    services.py watch FILE       write each message of /toposlam/state, /toposlam/map, /toposlam/markers, and each list of nodes
-    services.py call NAME        call a service of the type Trigger, and print its response
-    services.py stamps FILE      write the stamp of each TwistStamped of /cmd_vel as a line
-    services.py publish WHAT     publish /hazard_detection with a bump, /battery_state that is low, a /clock,
-                                 or grey pixels on /camera/pixels
+services.py watch FILE       write each message of /toposlam/state, /toposlam/map, /toposlam/markers, and each list of nodes
+services.py call NAME        call a service of the type Trigger, and print its response
+services.py stamps FILE      write the stamp of each TwistStamped of /cmd_vel as a line
+services.py publish WHAT     publish /hazard_detection with a bump, /battery_state that is low, a /clock,
+                             or grey pixels on /camera/pixels
 """
 
 import os
@@ -13,30 +13,15 @@ import time
 from dataclasses import dataclass
 
 from cyclonedds.core import Policy, Qos
-from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import array, float32, float64, int32, int64, sequence, uint8, uint32, uint64
-from cyclonedds.pub import DataWriter
-from cyclonedds.sub import DataReader
-from cyclonedds.topic import Topic
+from cyclonedds.idl.types import array, float32, int32, int64, sequence, uint8, uint32, uint64
 from cyclonedds.util import duration
-
-
-@dataclass
-class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
-    sec: int32
-    nanosec: uint32
+from messages import RELIABLE, Header, Pose, Time, TwistStamped, Vector3, reader, writer
 
 
 @dataclass
 class Clock(IdlStruct, typename="rosgraph_msgs::msg::dds_::Clock_"):
     clock: Time
-
-
-@dataclass
-class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
-    stamp: Time
-    frame_id: str
 
 
 @dataclass
@@ -67,39 +52,6 @@ class Map(IdlStruct, typename="toposlam_msgs::msg::dds_::Map_"):
     degrees: sequence[uint32]
     opposite: sequence[int32]
     robot: uint32
-
-
-@dataclass
-class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
-    x: float64
-    y: float64
-    z: float64
-
-
-@dataclass
-class Twist(IdlStruct, typename="geometry_msgs::msg::dds_::Twist_"):
-    linear: Vector3
-    angular: Vector3
-
-
-@dataclass
-class TwistStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TwistStamped_"):
-    header: Header
-    twist: Twist
-
-
-@dataclass
-class Quaternion(IdlStruct, typename="geometry_msgs::msg::dds_::Quaternion_"):
-    x: float64
-    y: float64
-    z: float64
-    w: float64
-
-
-@dataclass
-class Pose(IdlStruct, typename="geometry_msgs::msg::dds_::Pose_"):
-    position: Vector3
-    orientation: Quaternion
 
 
 @dataclass
@@ -237,22 +189,12 @@ class TriggerReply(IdlStruct, typename="std_srvs::srv::dds_::Trigger_Response_")
     message: str
 
 
-RELIABLE = [Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10)]
-VOLATILE = Qos(*RELIABLE, Policy.Durability.Volatile)
-LAST = Qos(*RELIABLE, Policy.Durability.TransientLocal)
-XCDR1 = Policy.DataRepresentation(use_cdrv0_representation=True)
-
-participant = DomainParticipant(int(os.environ["ROS_DOMAIN_ID"]))
-
-
-def reader(name, kind, qos):
-    topic = Topic(participant, name, kind, qos=Qos(XCDR1))
-    return DataReader(participant, topic, qos=Qos(*qos, XCDR1))
-
-
-def writer(name, kind):
-    topic = Topic(participant, name, kind, qos=Qos(XCDR1))
-    return DataWriter(participant, topic, qos=Qos(*VOLATILE, XCDR1))
+# Late readers get the last messages, too.
+LAST = Qos(
+    Policy.Reliability.Reliable(duration(seconds=1)),
+    Policy.Durability.TransientLocal,
+    Policy.History.KeepLast(10),
+)
 
 
 def header():
@@ -268,22 +210,34 @@ def line(found):
     if isinstance(found, Map):
         return f"/map {found.move} {found.degrees} {found.opposite} {found.robot}"
     if isinstance(found, MarkerArray):
-        shown = " ".join(f"{one.ns}:{one.type}:{one.action}:{len(one.points)}:{one.text}" for one in found.markers)
-        places = [(round(at.x, 2), round(at.y, 2)) for one in found.markers if one.ns == "vertices" for at in one.points]
+        shown = " ".join(
+            f"{one.ns}:{one.type}:{one.action}:{len(one.points)}:{one.text}" for one in found.markers
+        )
+        places = [
+            (round(at.x, 2), round(at.y, 2))
+            for one in found.markers
+            if one.ns == "vertices"
+            for at in one.points
+        ]
         frames = {one.header.frame_id for one in found.markers}
         return f"/markers {sorted(frames)} {shown} {places}"
     nodes = found.node_entities_info_seq
     names = " ".join(node.node_namespace + ":" + node.node_name for node in nodes)
     gid = bytes(found.gid.data)
-    of_it = all(bytes(one.data)[:12] == gid[:12] for node in nodes for one in node.reader_gid_seq + node.writer_gid_seq)
+    of_it = all(
+        bytes(one.data)[:12] == gid[:12]
+        for node in nodes
+        for one in node.reader_gid_seq + node.writer_gid_seq
+    )
     counts = " ".join(f"{len(node.reader_gid_seq)} {len(node.writer_gid_seq)}" for node in nodes)
     return f"/nodes {len(gid)} {names} {counts} {of_it}"
 
 
 def watch(path):
-    topics = {"rt/toposlam/state": DiagnosticArray, "rt/toposlam/map": Map, "rt/toposlam/markers": MarkerArray}
-    topics["ros_discovery_info"] = node_types(int(os.environ.get("GID", "16")))
+    topics = {"/toposlam/state": DiagnosticArray, "/toposlam/map": Map, "/toposlam/markers": MarkerArray}
     readers = [(reader(name, kind, LAST), kind) for name, kind in topics.items()]
+    nodes = node_types(int(os.environ.get("GID", "16")))
+    readers.append((reader("ros_discovery_info", nodes, LAST, prefix=""), nodes))
     with open(path, "w", buffering=1) as out:
         while True:
             for one, kind in readers:
@@ -294,7 +248,7 @@ def watch(path):
 
 
 def stamps(path):
-    commands = reader("rt/cmd_vel", TwistStamped, VOLATILE)
+    commands = reader("/cmd_vel", TwistStamped, RELIABLE)
     with open(path, "w", buffering=1) as out:
         while True:
             for found in (found for found in commands.take(N=100) if isinstance(found, TwistStamped)):
@@ -303,8 +257,8 @@ def stamps(path):
 
 
 def call(name):
-    replies = reader(f"rr/toposlam/{name}Reply", TriggerReply, VOLATILE)
-    requests = writer(f"rq/toposlam/{name}Request", TriggerRequest)
+    replies = reader(f"/toposlam/{name}Reply", TriggerReply, RELIABLE, prefix="rr")
+    requests = writer(f"/toposlam/{name}Request", TriggerRequest, prefix="rq")
     client = 0x1122334455667788
     end = time.time() + 10
     # A client of ROS 2 waits for the service, too.
@@ -328,10 +282,10 @@ def publish(what):
     numbers = [11.0, nan, -1.0, nan, nan, nan, 0.08]
     battery = BatteryState(header(), *numbers, 2, 1, 2, True, [], [], "", "1")
     topics = {
-        "bump": ("rt/hazard_detection", bump),
-        "battery": ("rt/battery_state", battery),
-        "clock": ("rt/clock", Clock(Time(77, 5))),
-        "pixels": ("rt/camera/pixels", Image(header(), 120, 160, "mono8", 0, 164, [128] * (164 * 120))),
+        "bump": ("/hazard_detection", bump),
+        "battery": ("/battery_state", battery),
+        "clock": ("/clock", Clock(Time(77, 5))),
+        "pixels": ("/camera/pixels", Image(header(), 120, 160, "mono8", 0, 164, [128] * (164 * 120))),
     }
     name, message = topics[what]
     out = writer(name, type(message))
