@@ -408,7 +408,7 @@ fn a_bumper_ends_a_run_and_a_low_battery_is_a_warning() {
         |word: &str, part: &str| stage.lines("seen", word).iter().any(|line| line.contains(part));
     until("the robot leaves", 60, || is_seen("/state 1", "by door 0; the battery is low"));
     assert!(is_seen("/state 1", "battery=8 %"));
-    // Without --ros-distro no tool is told of the node.
+    // Without --ros-distro the node is in no list.
     assert_eq!(stage.lines("seen", "/nodes").len(), 0);
     let _bump = publish("bump");
     let output = drive.ends_within(30);

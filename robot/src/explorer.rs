@@ -2,13 +2,11 @@
 //! Sections 4.3 and 5.
 
 mod error;
+mod mapping_run;
 mod obstacle;
 mod relocation;
 
-use thiserror::Error;
-use toposlam_logs::record::{
-    Arrival, EventKind, Frame, FrameSensor, RunEnd, RunEnding, RunObserver, SensingError,
-};
+use toposlam_logs::record::{Arrival, EventKind, Frame, FrameSensor, RunObserver};
 use toposlam_model::{
     driving::{
         algorithm2::{
@@ -22,7 +20,8 @@ use toposlam_model::{
 };
 
 use crate::{
-    budget::{Allowance, BudgetLimit, Spent},
+    budget::{Allowance, Spent},
+    capture::{RETAKES, Unusable, capture},
     event_log::EventLog,
     measured_hallway::{MeasuredHallway, direction},
     robot::{Robot, RobotError},
@@ -30,6 +29,7 @@ use crate::{
 };
 
 pub use error::{CorridorFailure, ExplorerError};
+pub(crate) use mapping_run::MappingRobot;
 use obstacle::{DEAD_END, Stall, turning_point};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,62 +69,6 @@ pub struct RobotExplorer<R, S, O = ()> {
     hallway: Option<MeasuredHallway>,
     measured: ArrivalMeasurement,
     last: Option<Frame>,
-}
-
-#[derive(Debug, Error)]
-enum Unusable {
-    #[error("the camera gives no image")]
-    Missing,
-    #[error("it is older than the end of the last motion")]
-    Stale,
-    #[error("it is the same as before the robot moved")]
-    Same,
-    #[error(transparent)]
-    NotSensed(#[from] SensingError),
-    #[error(transparent)]
-    Robot(RobotError),
-}
-
-/// The robot gives up after this many unusable frames in a row.
-pub(crate) const RETAKES: u32 = 6;
-
-/// A robot that keeps within a budget.
-pub(crate) trait Budgeted: World<Error = ExplorerError> {
-    fn allowance(&self) -> &Allowance;
-
-    /// The number of doors taken.
-    fn last_move(&self) -> u64;
-
-    /// Returns to the marker, and returns the reason.
-    fn return_to_marker(&mut self, limit: BudgetLimit) -> ExplorerError {
-        while let Some(door) = self.allowance().door_back() {
-            match self.traverse(door) {
-                Ok(()) => {}
-                Err(error @ (ExplorerError::Stopped { .. } | ExplorerError::Robot(_))) => {
-                    return error;
-                }
-                Err(_) => break,
-            }
-        }
-        let is_at_marker = self.allowance().is_at_marker();
-        ExplorerError::Budget { moves: self.last_move(), limit, is_at_marker }
-    }
-}
-
-/// How a run ended.
-pub(crate) fn ending(
-    mapped: &Result<MappedWorld, MappingError<ExplorerError>>,
-    moves: u64,
-) -> RunEnd {
-    let ending = match mapped {
-        Ok(_) => RunEnding::Mapped,
-        Err(MappingError::World(ExplorerError::Stopped { .. })) => RunEnding::Stopped,
-        Err(error @ MappingError::World(ExplorerError::Budget { .. })) => {
-            RunEnding::OutOfBudget(error.to_string())
-        }
-        Err(error) => RunEnding::GaveUp(error.to_string()),
-    };
-    RunEnd { moves, ending }
 }
 
 impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
@@ -178,27 +122,13 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         &mut self,
         settings: &RunSettings,
     ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
-        let RunSettings { method, dart_bound, budget, ref earlier, .. } = *settings;
-        self.allowance = Allowance::new(budget);
-        self.returns_at_obstacles |= method.recovers();
-        self.begins_anywhere = !earlier.is_empty();
-        let mut observer = |explorer: &mut Self, journey: &MapWalk, event: MappingEvent| {
-            explorer.log.mapping(&explorer.robot, journey, event);
-        };
-        let (run, mut mapped) = method.map_world(self, dart_bound, earlier, &mut observer);
-        if let Err(MappingError::World(ExplorerError::Budget { limit, .. })) = mapped {
-            mapped = Err(MappingError::World(self.return_to_marker(limit)));
-        }
-        self.emit(EventKind::End(ending(&mapped, self.moves)));
-        (run, mapped)
+        self.returns_at_obstacles |= settings.method.recovers();
+        self.begins_anywhere = !settings.earlier.is_empty();
+        self.map_building(settings)
     }
 
     fn spent(&self) -> Spent {
         Spent::new(self.last_move as f64, self.robot.odometry().time, self.metres)
-    }
-
-    fn emit(&mut self, kind: EventKind) {
-        self.log.emit(&self.robot, kind);
     }
 
     /// Drives a path to its end.
@@ -264,10 +194,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             }
         }
         let frame = self.frame_kind();
-        let cause = match (&last, frame) {
-            (Unusable::Missing, FrameKind::Scan) => "the scanner gives no scan".to_owned(),
-            _ => last.to_string(),
-        };
+        let cause = last.cause(frame);
         let (moves, door) = (self.last_move, self.door);
         Err(ExplorerError::NoImage { moves, door, images: RETAKES, cause, frame })
     }
@@ -307,22 +234,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         Ok(frame)
     }
 
-    /// A frame that was taken since the robot last moved.
     fn capture(&mut self) -> Result<Frame, Unusable> {
-        let at = self.robot.odometry();
-        let frame = self.robot.capture().map_err(|error| match error {
-            RobotError::NoImage => Unusable::Missing,
-            RobotError::StaleImage { .. } => Unusable::Stale,
-            error => Unusable::Robot(error),
-        })?;
-        if frame.taken < at.time {
-            return Err(Unusable::Stale);
-        }
-        let same = |last: &Frame| last.odometry != at.odometry && last.same_data(&frame);
-        if self.last.as_ref().is_some_and(same) {
-            return Err(Unusable::Same);
-        }
-        Ok(frame)
+        capture(&mut self.robot, self.last.as_ref())
     }
 
     /// Where the robot stands. At the very start, it finds out.
@@ -358,13 +271,21 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 }
 
-impl<R: Robot, S: FrameSensor, O: RunObserver> Budgeted for RobotExplorer<R, S, O> {
-    fn allowance(&self) -> &Allowance {
-        &self.allowance
+impl<R: Robot, S: FrameSensor, O: RunObserver> MappingRobot for RobotExplorer<R, S, O> {
+    fn allowance(&mut self) -> &mut Allowance {
+        &mut self.allowance
     }
 
-    fn last_move(&self) -> u64 {
-        self.last_move
+    fn moves_made(&self) -> [u64; 2] {
+        [self.last_move, self.moves]
+    }
+
+    fn report(&mut self, journey: &MapWalk, event: MappingEvent) {
+        self.log.mapping(&self.robot, journey, event);
+    }
+
+    fn emit(&mut self, kind: EventKind) {
+        self.log.emit(&self.robot, kind);
     }
 }
 

@@ -5,6 +5,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
 pub mod budget;
+mod capture;
 pub mod corridors;
 mod event_log;
 pub mod explorer;

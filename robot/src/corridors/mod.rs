@@ -42,8 +42,9 @@ use toposlam_vision::{
 
 use crate::{
     budget::{Allowance, Spent},
+    capture::{RETAKES, Unusable, capture},
     event_log::EventLog,
-    explorer::{Budgeted, CorridorFailure, ExplorerError, RETAKES, ending},
+    explorer::{CorridorFailure, ExplorerError, MappingRobot},
     robot::{Robot, RobotError},
     run_settings::RunSettings,
 };
@@ -196,21 +197,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         &mut self,
         settings: &RunSettings,
     ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
-        let RunSettings { method, dart_bound, budget, ref earlier, .. } = *settings;
-        self.allowance = Allowance::new(budget);
-        let mut observer = |explorer: &mut Self, journey: &MapWalk, event: MappingEvent| {
-            explorer.log.mapping(&explorer.robot, journey, event);
-        };
-        let (run, mut mapped) = method.map_world(self, dart_bound, earlier, &mut observer);
-        if let Err(MappingError::World(ExplorerError::Budget { limit, .. })) = mapped {
-            mapped = Err(MappingError::World(self.return_to_marker(limit)));
-        }
-        self.emit(EventKind::End(ending(&mapped, self.moves)));
-        (run, mapped)
-    }
-
-    fn emit(&mut self, kind: EventKind) {
-        self.log.emit(&self.robot, kind);
+        self.map_building(settings)
     }
 
     fn spent(&self) -> Spent {
@@ -790,25 +777,20 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// A scan that was taken since the robot last moved.
     fn look(&mut self) -> Result<(Frame, Arc<Scan>), Stop> {
-        let mut cause = "the scanner gives no scan".to_owned();
+        let mut last = Unusable::Missing;
         for _ in 0..RETAKES {
-            let stands_since = self.robot.odometry().time;
-            match self.robot.capture() {
-                Ok(frame) if frame.taken < stands_since => {
-                    "it is older than the end of the last motion".clone_into(&mut cause);
-                }
+            match capture(&mut self.robot, self.last.as_ref()) {
                 Ok(frame) => {
                     if let Some(scan) = frame.scan.clone() {
                         self.last = Some(frame.clone());
                         return Ok((frame, scan));
                     }
                 }
-                Err(error @ (RobotError::NoImage | RobotError::StaleImage { .. })) => {
-                    cause = error.to_string();
-                }
-                Err(error) => return Err(error.into()),
+                Err(Unusable::Robot(error)) => return Err(error.into()),
+                Err(unusable) => last = unusable,
             }
         }
+        let cause = last.cause(FrameKind::Scan);
         let (moves, door, frame) = (self.last_move, self.door, FrameKind::Scan);
         Err(Stop::Error(ExplorerError::NoImage { moves, door, images: RETAKES, cause, frame }))
     }
@@ -851,13 +833,21 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     }
 }
 
-impl<R: Robot, O: RunObserver> Budgeted for CorridorExplorer<R, O> {
-    fn allowance(&self) -> &Allowance {
-        &self.allowance
+impl<R: Robot, O: RunObserver> MappingRobot for CorridorExplorer<R, O> {
+    fn allowance(&mut self) -> &mut Allowance {
+        &mut self.allowance
     }
 
-    fn last_move(&self) -> u64 {
-        self.last_move
+    fn moves_made(&self) -> [u64; 2] {
+        [self.last_move, self.moves]
+    }
+
+    fn report(&mut self, journey: &MapWalk, event: MappingEvent) {
+        self.log.mapping(&self.robot, journey, event);
+    }
+
+    fn emit(&mut self, kind: EventKind) {
+        self.log.emit(&self.robot, kind);
     }
 }
 

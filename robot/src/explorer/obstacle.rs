@@ -13,7 +13,7 @@ use toposlam_model::{
     percept::{Percept, Sighting},
 };
 
-use super::{ExplorerError, RobotExplorer, Standpoint};
+use super::{ExplorerError, MappingRobot, RobotExplorer, Standpoint};
 use crate::robot::Robot;
 
 pub(super) const DEAD_END: Percept = Percept { degree: 1, sighting: Sighting::Nothing };

@@ -11,8 +11,8 @@ use toposlam_model::{
     mapping::{ArrivalMeasurement, Relocate},
 };
 
-use super::{ExplorerError, RobotExplorer, Unusable};
-use crate::robot::Robot;
+use super::{ExplorerError, MappingRobot, RobotExplorer};
+use crate::{capture::Unusable, robot::Robot};
 
 /// A robot that got lost tries these directions, relative to its heading, until it comes to a junction.
 const DIRECTIONS: [f64; 4] = [0.0, PI, FRAC_PI_2, -FRAC_PI_2];

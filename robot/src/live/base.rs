@@ -72,7 +72,7 @@ pub(super) struct LiveBase {
     epoch: Nanoseconds,
     last: Reckoning,
     /// When the last odometry came.
-    heard: Instant,
+    arrived: Instant,
     /// `None` for a robot without a laser scanner.
     pub(super) scanner: Option<Scanner>,
     response: ResponseMeter,
@@ -96,7 +96,7 @@ impl LiveBase {
             stop,
             epoch: last.stamp,
             last,
-            heard: Instant::now(),
+            arrived: Instant::now(),
             scanner,
             response: ResponseMeter::default(),
             track: Vec::new(),
@@ -120,7 +120,7 @@ impl LiveBase {
 
     /// The present odometry, if it comes.
     pub(super) fn read(&mut self) {
-        if self.hear().is_some() {
+        if self.take_odometry().is_some() {
             self.sample(WheelSpeeds::STOP);
         }
     }
@@ -133,18 +133,18 @@ impl LiveBase {
     /// # Errors
     /// Returns an error if odometry has not come for too long.
     pub(super) fn check_odometry(&mut self) -> Result<(), RobotError> {
-        self.hear();
-        if self.heard.elapsed() > self.patience {
+        self.take_odometry();
+        if self.arrived.elapsed() > self.patience {
             return Err(self.odometry.silent(self.patience));
         }
         Ok(())
     }
 
     /// Takes the last odometry, if it is newer.
-    fn hear(&mut self) -> Option<Reckoning> {
-        let (now, heard) = self.odometry.take_timed()?;
+    fn take_odometry(&mut self) -> Option<Reckoning> {
+        let (now, arrived) = self.odometry.take_timed()?;
         (now.stamp > self.last.stamp).then(|| {
-            (self.last, self.heard) = (now, heard);
+            (self.last, self.arrived) = (now, arrived);
             now
         })
     }
@@ -187,7 +187,7 @@ impl LiveBase {
                 self.wheels.wait()?;
             }
             // The period begins now, not at the last odometry.
-            let last = self.hear();
+            let last = self.take_odometry();
             if !stopping {
                 self.check_odometry()?;
                 if let Some(scanner) = &mut self.scanner {
@@ -217,7 +217,7 @@ impl LiveBase {
             RobotError::Silent { topic, .. } if back > 0 => went_back(&topic, back),
             error => error,
         })?;
-        self.heard = Instant::now();
+        self.arrived = Instant::now();
         self.sample(wheels);
         self.response.add(wheels, before, self.reading());
         if self.response.still() >= STILL {

@@ -1,0 +1,50 @@
+//! A frame that shows where a robot is now: it is taken again if it is missing, too old, or the same as before. Section 4.
+
+use thiserror::Error;
+use toposlam_logs::record::{Frame, SensingError};
+use toposlam_model::driving::algorithm2::FrameKind;
+
+use crate::robot::{Robot, RobotError};
+
+/// Why a frame cannot be used.
+#[derive(Debug, Error)]
+pub(crate) enum Unusable {
+    #[error("the camera gives no image")]
+    Missing,
+    #[error("it is older than the end of the last motion")]
+    Stale,
+    #[error("it is the same as before the robot moved")]
+    Same,
+    #[error(transparent)]
+    NotSensed(#[from] SensingError),
+    #[error(transparent)]
+    Robot(RobotError),
+}
+
+impl Unusable {
+    /// What is wrong with a frame of this kind.
+    pub(crate) fn cause(&self, frame: FrameKind) -> String {
+        match (self, frame) {
+            (Self::Missing, FrameKind::Scan) => "the scanner gives no scan".to_owned(),
+            _ => self.to_string(),
+        }
+    }
+}
+
+/// The robot gives up after this many unusable frames in a row.
+pub(crate) const RETAKES: u32 = 6;
+
+/// A frame that was taken since the robot last moved, after the last one that was used.
+pub(crate) fn capture(robot: &mut impl Robot, last: Option<&Frame>) -> Result<Frame, Unusable> {
+    let at = robot.odometry();
+    let frame = robot.capture().map_err(|error| match error {
+        RobotError::NoImage => Unusable::Missing,
+        RobotError::StaleImage { .. } => Unusable::Stale,
+        error => Unusable::Robot(error),
+    })?;
+    if frame.taken < at.time {
+        return Err(Unusable::Stale);
+    }
+    let same = |last: &Frame| last.odometry != at.odometry && last.same_data(&frame);
+    if last.is_some_and(same) { Err(Unusable::Same) } else { Ok(frame) }
+}
