@@ -75,6 +75,7 @@ pub struct Allowance {
     degree: u32,
     leaving: Option<Leaving>,
     knows_way: bool,
+    returns: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -105,6 +106,16 @@ impl Allowance {
         }
         let there = self.longest.map_or(FIRST, |longest| longest.component_mul(&MARGIN));
         exceeded(spent + 2.0 * there + self.way_back(), self.budget)
+    }
+
+    /// The limit that is exceeded, unless the robot is on its way back.
+    pub fn limit_reached(&self, spent: Spent) -> Option<BudgetLimit> {
+        exceeded(spent, self.budget).filter(|_| !self.returns)
+    }
+
+    /// The robot returns to its marker, whatever that takes.
+    pub fn begin_return(&mut self) {
+        self.returns = true;
     }
 
     /// The robot takes a door.

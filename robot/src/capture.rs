@@ -8,7 +8,7 @@ use crate::robot::{Robot, RobotError};
 
 /// Why a frame cannot be used.
 #[derive(Debug, Error)]
-pub(crate) enum Unusable {
+pub(crate) enum UnusableFrame {
     #[error("the camera gives no image")]
     Missing,
     #[error("it is older than the end of the last motion")]
@@ -21,7 +21,7 @@ pub(crate) enum Unusable {
     Robot(RobotError),
 }
 
-impl Unusable {
+impl UnusableFrame {
     /// What is wrong with a frame of this kind.
     pub(crate) fn cause(&self, frame: FrameKind) -> String {
         match (self, frame) {
@@ -35,16 +35,19 @@ impl Unusable {
 pub(crate) const RETAKES: u32 = 6;
 
 /// A frame that was taken since the robot last moved, after the last one that was used.
-pub(crate) fn capture(robot: &mut impl Robot, last: Option<&Frame>) -> Result<Frame, Unusable> {
+pub(crate) fn capture(
+    robot: &mut impl Robot,
+    last: Option<&Frame>,
+) -> Result<Frame, UnusableFrame> {
     let at = robot.odometry();
     let frame = robot.capture().map_err(|error| match error {
-        RobotError::NoImage => Unusable::Missing,
-        RobotError::StaleImage { .. } => Unusable::Stale,
-        error => Unusable::Robot(error),
+        RobotError::NoImage => UnusableFrame::Missing,
+        RobotError::StaleImage { .. } => UnusableFrame::Stale,
+        error => UnusableFrame::Robot(error),
     })?;
     if frame.taken < at.time {
-        return Err(Unusable::Stale);
+        return Err(UnusableFrame::Stale);
     }
     let same = |last: &Frame| last.odometry != at.odometry && last.same_data(&frame);
-    if last.is_some_and(same) { Err(Unusable::Same) } else { Ok(frame) }
+    if last.is_some_and(same) { Err(UnusableFrame::Same) } else { Ok(frame) }
 }

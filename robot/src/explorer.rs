@@ -21,7 +21,7 @@ use toposlam_model::{
 
 use crate::{
     budget::{Allowance, Spent},
-    capture::{RETAKES, Unusable, capture},
+    capture::{RETAKES, UnusableFrame, capture},
     event_log::EventLog,
     measured_hallway::{MeasuredHallway, direction},
     robot::{Robot, RobotError},
@@ -185,11 +185,11 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     /// A frame that can be used, and its scene.
     // paper: alg2.4, alg2.5
     fn look(&mut self) -> Result<(Frame, Scene), ExplorerError> {
-        let mut last = Unusable::Missing;
+        let mut last = UnusableFrame::Missing;
         for _ in 0..RETAKES {
             match self.frame() {
                 Ok(seen) => return Ok(seen),
-                Err(Unusable::Robot(error)) => return Err(self.robot_error(error)),
+                Err(UnusableFrame::Robot(error)) => return Err(self.robot_error(error)),
                 Err(unusable) => last = unusable,
             }
         }
@@ -206,7 +206,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 
     /// A frame that was taken since the robot last moved, and its scene. If the frame does not show enough, the robot
     /// looks around first.
-    fn frame(&mut self) -> Result<(Frame, Scene), Unusable> {
+    fn frame(&mut self) -> Result<(Frame, Scene), UnusableFrame> {
         let mut frame = self.capture()?;
         let headings = self.sensor.headings_to_look_around(&frame);
         if !headings.is_empty() {
@@ -217,7 +217,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     /// Turns to these headings, relative to a frame's, and returns the frame that is taken at the last of them.
-    fn look_around(&mut self, mut frame: Frame, headings: &[f64]) -> Result<Frame, Unusable> {
+    fn look_around(&mut self, mut frame: Frame, headings: &[f64]) -> Result<Frame, UnusableFrame> {
         let ahead = frame.odometry.heading;
         self.sensor.begin_to_look_around(&frame);
         for heading in headings {
@@ -227,14 +227,14 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             self.emit(EventKind::Frame(frame));
             self.emit(EventKind::LookAround { turn });
             if turn != 0.0 {
-                self.robot.turn(turn).map_err(Unusable::Robot)?;
+                self.robot.turn(turn).map_err(UnusableFrame::Robot)?;
             }
             frame = self.capture()?;
         }
         Ok(frame)
     }
 
-    fn capture(&mut self) -> Result<Frame, Unusable> {
+    fn capture(&mut self) -> Result<Frame, UnusableFrame> {
         capture(&mut self.robot, self.last.as_ref())
     }
 

@@ -11,9 +11,9 @@ use toposlam_model::{
     percept::{Door, Percept},
     world::{GraphWorld, State, World},
 };
-use toposlam_vision::geometry::distance;
+use toposlam_vision::geometry::{distance, nearest};
 
-use crate::truth::{JunctionTruth, angle, nearest};
+use crate::truth::{JunctionTruth, angle};
 
 /// A robot is at a junction up to this distance from its turning point, in metres.
 const THERE: f64 = 0.5;

@@ -17,7 +17,7 @@ use toposlam_model::{
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
     percept::Door,
 };
-use toposlam_vision::geometry::{distance, unit};
+use toposlam_vision::geometry::{distance, nearest, unit};
 
 /// Up to this distance from a turning point the robot is at the junction, in metres.
 pub const JUNCTION_WITHIN: f64 = 0.5;
@@ -189,11 +189,6 @@ pub fn true_marker(plan: &FloorPlan, dart: Dart, pose: Pose) -> MarkerView {
         axis: undirected(points),
         door: junction.shape.and(door).map(|door| Door(door as u32)),
     }
-}
-
-/// The item with the least distance.
-pub(crate) fn nearest<T>(items: impl IntoIterator<Item = T>, off: impl Fn(&T) -> f64) -> Option<T> {
-    items.into_iter().min_by(|one, other| off(one).total_cmp(&off(other)))
 }
 
 /// A direction, in radians counter-clockwise from east.

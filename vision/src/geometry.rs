@@ -4,6 +4,8 @@
 //! of the robot's frame to the map's. Directions are radians counter-clockwise from the x axis of their frame. The types
 //! of the model, which does without nalgebra, are converted where they enter and leave.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
@@ -26,6 +28,16 @@ pub fn direction(from: impl Into<Point2<f64>>, to: impl Into<Point2<f64>>) -> f6
 
 pub fn distance(one: impl Into<Point2<f64>>, other: impl Into<Point2<f64>>) -> f64 {
     (other.into() - one.into()).norm()
+}
+
+/// The clockwise angle from one direction to another, in radians, from 0 to a full turn.
+pub fn clockwise(from: f64, to: f64) -> f64 {
+    (from - to).rem_euclid(TAU)
+}
+
+/// The item with the least distance; the first one of several.
+pub fn nearest<T>(items: impl IntoIterator<Item = T>, off: impl Fn(&T) -> f64) -> Option<T> {
+    items.into_iter().min_by(|one, other| off(one).total_cmp(&off(other)))
 }
 
 /// A length in whole steps of 2^-10 m: sums of such lengths are exact, so the length between two places of a way does not

@@ -15,6 +15,9 @@ params! {
         same_place: f64 = 3.0,
         /// Directions nearer to each other are those of one arm.
         same_arm: f64 = 0.6,
+        /// The door by which the robot came in differs by less than this from the direction from which it came: it may have
+        /// passed through a lobby.
+        entry: f64 = 1.0,
         /// Ways that meet this near to the robot are an opening beside it.
         opening: f64 = 1.0,
         /// Where it has turned around within this distance, it need not do so again, ...
@@ -51,18 +54,22 @@ params! {
         further: f64 = 1.5,
         /// How often a robot that got lost tries to come to a junction.
         tries: usize = 6,
-        /// The marker is seen from up to this far from its place, besides the clearance.
+        /// A marker this far from a place, besides the clearance, lies there, ...
         marker_range: f64 = 2.0,
-        /// The marker is remembered for this length of the way.
+        /// ... and is remembered for this length of the way.
         marker_memory: f64 = 100.0,
+        /// Nearer to the centre it shows no door.
+        marker_off: f64 = 0.5,
         /// The longest step from scan to scan.
         step: f64 = 0.45,
         /// It drives towards the point of its way that is this far ahead.
         look_ahead: f64 = 0.9,
         /// A smaller turn is made while it drives.
         straight: f64 = 0.02,
-        /// A scanner that does not see all round takes a scan after each turn by this.
+        /// A scanner that does not see all round takes a scan after each turn by this, ...
         turn: f64 = 0.45,
+        /// ... at most this often.
+        turns: usize = 16,
         /// A robot that turns around takes this number of scans if its scanner sees all round, ...
         round_views: usize = 8,
         /// ... and this number if it does not.
@@ -79,12 +86,24 @@ params! {
         bend_length: f64 = 1.5,
         /// A way that is known for less than this has ended.
         at_end: f64 = 0.3,
-        /// A robot that stops before a wall is this far from it.
-        to_wall: f64 = 0.4,
-        /// A robot that has driven less than this in a step cannot go on.
+        /// A robot without a way drives straight on up to this far from a wall.
+        before_wall: f64 = 0.4,
+        /// A robot that has driven less than this in a step was stopped.
         stuck: f64 = 0.05,
+        /// Then it tries so many directions to each side of its way, ...
+        beside: usize = 3,
+        /// ... each this far from the one before.
+        beside_turn: f64 = 0.35,
         /// A point is reached within this distance.
         at_point: f64 = 0.12,
+        /// The room around the centre of a place to which the robot goes.
+        room: f64 = 0.41,
+        /// A centre nearer than this is where the robot is.
+        is_there: f64 = 0.2,
+        /// How far a dead end extends, or the place where a door turned out to be none.
+        end_extent: f64 = 1.0,
+        /// The longest way without a junction or a dead end.
+        longest_search: f64 = 1_000.0 => 0.0..=100_000.0,
         /// The longest way of a run.
         longest_way: f64 = 30_000.0 => 0.0..=100_000.0,
     }

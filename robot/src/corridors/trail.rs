@@ -9,6 +9,7 @@ use toposlam_vision::geometry::distance;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Trail {
     points: Vec<Point2<f64>>,
+    /// In their order.
     side_trips: Vec<Range<usize>>,
 }
 
@@ -17,13 +18,19 @@ impl Trail {
         self.points.push(point);
     }
 
+    pub(super) fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
     pub(super) fn len(&self) -> usize {
         self.points.len()
     }
 
     /// What was driven from a number on was only to look at something: the robot has come back.
     pub(super) fn end_side_trip(&mut self, begin: usize) {
-        self.side_trips.push(begin..self.points.len());
+        while self.side_trips.pop_if(|last| last.start >= begin).is_some() {}
+        let begin = begin.max(self.side_trips.last().map_or(0, |last| last.end));
+        self.side_trips.push(begin..self.points.len().max(begin));
     }
 
     /// The points from a number on, the last one first, at least this far apart.
@@ -53,7 +60,10 @@ impl Trail {
 
     /// From the last point to the first, without side trips.
     pub(super) fn without_side_trips(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
-        let is_aside = |number: usize| self.side_trips.iter().any(|trip| trip.contains(&number));
+        let is_aside = |number: usize| {
+            let later = self.side_trips.partition_point(|trip| trip.end <= number);
+            self.side_trips.get(later).is_some_and(|trip| trip.contains(&number))
+        };
         let points = self.points.iter().enumerate().rev();
         points.filter(move |(number, _)| !is_aside(*number)).map(|(_, point)| *point)
     }
@@ -74,6 +84,17 @@ mod tests {
         trail.end_side_trip(3);
         (3..=6).for_each(|x| trail.push(on(x)));
         trail
+    }
+
+    #[test]
+    fn a_side_trip_that_goes_on_is_one() {
+        let mut trail = trail();
+        trail.end_side_trip(8);
+        trail.push(Point2::origin());
+        trail.end_side_trip(8);
+        assert_eq!(trail.side_trips, [3..6, 8..11]);
+        trail.end_side_trip(2);
+        assert_eq!(trail.side_trips, [2..11]);
     }
 
     #[test]

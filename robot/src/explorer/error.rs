@@ -40,16 +40,20 @@ pub enum ExplorerError {
 /// Why a robot in a network of corridors does not know at which junction it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum CorridorFailure {
-    /// It has not come to a junction yet.
+    /// It has not come to a junction yet, or not back to one.
     #[error("no junction is seen")]
     Missed,
-    #[error("the number of doors is undecided")]
+    /// The number of doors, or the door at which the marker lies.
+    #[error("what the junction is like is undecided")]
     Undecided,
     /// It is that by which it left.
     #[error("the door is that of an alcove")]
     Alcove,
-    /// The way is too long.
-    #[error("the run takes too long")]
+    #[error("something stops the robot")]
+    Stopped,
+    #[error("it is not seen whether the way goes on")]
+    Unseen,
+    #[error("the robot drove too far without a junction")]
     TooFar,
 }
 

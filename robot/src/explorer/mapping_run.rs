@@ -53,6 +53,7 @@ pub(crate) trait MappingRobot: Relocate<Error = ExplorerError> + Sized {
 
     /// Returns to the marker, and returns the reason.
     fn return_to_marker(&mut self, limit: BudgetLimit) -> ExplorerError {
+        self.allowance().begin_return();
         while let Some(door) = self.allowance().door_back() {
             match self.traverse(door) {
                 Ok(()) => {}

@@ -12,7 +12,7 @@ use toposlam_model::{
 };
 
 use super::{ExplorerError, MappingRobot, RobotExplorer};
-use crate::{capture::Unusable, robot::Robot};
+use crate::{capture::UnusableFrame, robot::Robot};
 
 /// A robot that got lost tries these directions, relative to its heading, until it comes to a junction.
 const DIRECTIONS: [f64; 4] = [0.0, PI, FRAC_PI_2, -FRAC_PI_2];
@@ -44,7 +44,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                         return Ok(());
                     }
                 }
-                Err(Unusable::Robot(error)) => return Err(self.robot_error(error)),
+                Err(UnusableFrame::Robot(error)) => return Err(self.robot_error(error)),
                 Err(_) => {}
             }
         }

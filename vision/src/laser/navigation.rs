@@ -6,6 +6,7 @@ use toposlam_model::driving::scene::wrapped;
 
 use super::{
     ends::WayEnd,
+    grid::Cell,
     local_map::LocalMap,
     way_graph::{Way, WayNode},
 };
@@ -19,8 +20,18 @@ use crate::{
 pub struct WayAhead {
     /// Its middle line.
     pub line: Vec<Point2<f64>>,
-    /// The distance from its end to the nearest wall, in metres.
-    pub clearance: f64,
+    /// What is at the end of the line.
+    pub end: LineEnd,
+}
+
+/// What is at the end of the known way of a robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum LineEnd {
+    /// A wall, so many metres farther.
+    Wall(f64),
+    /// The way goes on, or nothing was seen there yet.
+    #[default]
+    Unknown,
 }
 
 /// Which way a robot takes.
@@ -71,21 +82,37 @@ impl LocalMap {
             if beside > BESIDE {
                 return None;
             }
-            let (line, last) = self.followed(way, end, near);
+            let (line, node) = self.followed(way, end, near);
             let at = along(&line, choice.measured)?;
             let is_step = distance(line[0], at) > self.cell();
             let turn = wrapped(direction(from, at) - choice.towards).abs();
+            let WayNode { clearance, end, .. } = self.ways.nodes[node];
+            let end = match end {
+                Some(end) if end.kind != WayEnd::Open => LineEnd::Wall(clearance),
+                _ => LineEnd::Unknown,
+            };
             (is_step && turn <= choice.aside)
-                .then_some((turn + BESIDE_COST * beside, WayAhead { line, clearance: last }))
+                .then_some((turn + BESIDE_COST * beside, WayAhead { line, end }))
         };
         let ways = ways.filter_map(|way| cost(&way));
         ways.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, way)| way)
     }
 
-    /// How far a robot can drive from a point straight on, up to a limit, if it keeps this far from walls; in metres.
-    pub fn room_ahead(&self, from: Point2<f64>, towards: f64, radius: f64, limit: f64) -> f64 {
-        let (length, _) = self.clearances.sight(from, towards, limit + radius);
-        (length - radius).clamp(0.0, limit)
+    /// The way straight on from a point, up to a limit and so far before what is there, in metres.
+    pub fn straight_ahead(
+        &self,
+        from: Point2<f64>,
+        towards: f64,
+        before: f64,
+        limit: f64,
+    ) -> WayAhead {
+        let (length, cell) = self.clearances.sight(from, towards, limit + before);
+        let line = vec![from, from + (length - before).clamp(0.0, limit) * unit(towards)];
+        let end = match cell {
+            Cell::Occupied => LineEnd::Wall(before),
+            Cell::Free | Cell::Unknown => LineEnd::Unknown,
+        };
+        WayAhead { line, end }
     }
 
     /// Whether a robot of this radius can stand at a point.
@@ -155,9 +182,9 @@ impl LocalMap {
         if end == 0 { line.collect() } else { line.rev().collect() }
     }
 
-    /// The line of a way from one of its points on, and of those that go on from it as straight as possible; and the
-    /// clearance at its end.
-    fn followed(&self, way: usize, end: usize, from: usize) -> (Vec<Point2<f64>>, f64) {
+    /// The line of a way from one of its points on, and of those that go on from it as straight as possible; and the node at
+    /// its end.
+    fn followed(&self, way: usize, end: usize, from: usize) -> (Vec<Point2<f64>>, usize) {
         let graph = &self.ways;
         let mut line = self.directed(way, end).split_off(from);
         let (mut last, mut node) = (way, graph.ways[way].nodes[1 - end]);
@@ -183,12 +210,12 @@ impl LocalMap {
             line.extend(self.directed(next, begin).into_iter().skip(1));
             (last, node) = (next, graph.ways[next].nodes[1 - begin]);
         }
-        (line, graph.nodes[node].clearance)
+        (line, node)
     }
 }
 
 /// The length of a line of neighbouring cells, in metres.
-pub fn length(line: &[Point2<f64>]) -> f64 {
+fn length(line: &[Point2<f64>]) -> f64 {
     line.windows(2).map(|two| distance(two[0], two[1])).sum()
 }
 
@@ -291,7 +318,19 @@ mod tests {
         assert!(
             map.has_space_at([30.0, 2.5].into(), 0.9) && !map.has_space_at([30.0, 3.3].into(), 0.9)
         );
-        let room = map.room_ahead([14.0, 2.5].into(), FRAC_PI_2, 0.4, 5.0);
-        assert!((room - 0.6).abs() < 0.2, "{room}");
+    }
+
+    #[test]
+    fn the_end_of_a_way_is_a_wall_if_one_is_seen_there() {
+        let at = Point2::new(10.0, 2.5);
+        let map = map(at);
+        let ahead = |towards| map.straight_ahead(at, towards, 0.4, 5.0);
+        let into_niche = ahead(FRAC_PI_2);
+        assert_eq!(into_niche.end, LineEnd::Wall(0.4));
+        assert!(distance(into_niche.line[1], [10.0, 5.1]) < 0.3, "{into_niche:?}");
+        assert_eq!(ahead(PI).end, LineEnd::Unknown, "the corridor goes on");
+        let choice = WayChoice { towards: FRAC_PI_2, aside: 0.6, measured: 1.5 };
+        let way = map.way_ahead(at, &choice).map(|way| way.end);
+        assert!(matches!(way, None | Some(LineEnd::Wall(_))), "{way:?}");
     }
 }

@@ -271,14 +271,20 @@ params! {
 
 impl LaserParams {
     /// The same for a scanner of this range, in metres. In a corridor the readings between the farthest points of its walls that
-    /// a scanner reaches have no return: they show that nothing is nearer. And a way is known no farther than its range.
+    /// a scanner reaches have no return: they show that nothing is nearer. And a way is known no farther than its range. What
+    /// a user has set stays.
     #[must_use]
     pub fn for_range(mut self, range: f64) -> Self {
         let Self { map, arm, .. } = &mut self;
-        let reached = WALLS_REACHED * range;
-        let silent = 2.0 * (arm.max_width / 2.0 / reached.max(arm.max_width)).asin();
-        map.max_silence = map.max_silence.max(silent);
-        arm.min_possible = arm.min_possible.min(WAY_KNOWN * range);
+        let (usual_map, usual_arm) = (LocalMapParams::DEFAULT, ArmParams::DEFAULT);
+        if map.max_silence.to_bits() == usual_map.max_silence.to_bits() {
+            let reached = WALLS_REACHED * range;
+            let silent = 2.0 * (arm.max_width / 2.0 / reached.max(arm.max_width)).asin();
+            map.max_silence = map.max_silence.max(silent);
+        }
+        if arm.min_possible.to_bits() == usual_arm.min_possible.to_bits() {
+            arm.min_possible = arm.min_possible.min(WAY_KNOWN * range);
+        }
         self
     }
 }
@@ -337,6 +343,9 @@ mod tests {
         assert!(short.map.max_silence > 2.0 * 17_f64.to_radians(), "{short:?}");
         assert!((short.arm.min_possible - 2.8).abs() < 1e-9);
         assert!(seen_to(0.1).map.max_silence <= PI);
+        let given: LaserParams =
+            read("[map]\nmax_silence = 0.05\n[arm]\nmin_possible = 3.0").unwrap();
+        assert_eq!(given.for_range(3.5), given, "what a file sets");
     }
 
     const ERRORS: &str = r#"

@@ -16,18 +16,17 @@ use toposlam_model::{
     embedded_graph::Dart,
 };
 use toposlam_robot::robot::{Robot, RobotError, Sample, TimedOdometry};
-use toposlam_vision::geometry::{direction, distance, from_robot, unit};
+use toposlam_vision::geometry::{direction, distance, from_robot, nearest, unit};
 
-use super::{
-    corridor_world::{CorridorWorld, SmoothedWorld},
-    nearest,
-};
+use super::corridor_world::{CorridorWorld, SmoothedWorld};
 use crate::{ConvexPolygon, LaserScanner};
 
 /// A robot that drives on the floor of a building. Furniture and people do not stop it.
 #[derive(Debug)]
 pub(super) struct CorridorRobot {
     floor: Vec<ConvexPolygon>,
+    /// What stops it, and no scan shows.
+    pub(super) obstacle: Option<ConvexPolygon>,
     scanner: LaserScanner,
     pose: Pose,
     reading: TimedOdometry,
@@ -72,6 +71,7 @@ impl CorridorRobot {
         let (along, clearance) = (direction(place, towards), world.clearance(marker[0]));
         Self {
             floor: world.plan.floor(),
+            obstacle: None,
             scanner,
             pose,
             reading: TimedOdometry { time: 0.0, odometry: Odometry { position, heading } },
@@ -85,7 +85,10 @@ impl CorridorRobot {
 
     fn has_space_at(&self, point: Point2<f64>) -> bool {
         let [along, across] = [Vector2::new(RADIUS, 0.0), Vector2::new(0.0, RADIUS)];
-        let is_floor = |point: Point2<f64>| self.floor.iter().any(|piece| piece.holds(point));
+        let is_floor = |point: Point2<f64>| {
+            self.floor.iter().any(|piece| piece.holds(point))
+                && !self.obstacle.as_ref().is_some_and(|obstacle| obstacle.holds(point))
+        };
         [along, -along, across, -across].into_iter().all(|off| is_floor(point + off))
     }
 
@@ -171,7 +174,7 @@ pub struct PerceptTally {
     pub percepts: u64,
     /// Those whose number of doors is wrong, or that are of no junction.
     pub wrong: u64,
-    /// The junctions that it passed without noticing them.
+    /// The moves that ended at another junction than the next one.
     pub passed: u64,
 }
 
@@ -182,23 +185,17 @@ pub(super) struct PerceptJudge<'w> {
     smoothed: &'w SmoothedWorld,
     /// The angle from the frame of odometry to the plan.
     turn: f64,
-    /// The junction where the robot is, and whether it has derived that it is there.
-    here: Option<(usize, bool)>,
-    /// The others that it passed since it last derived where it is.
-    passed: Vec<usize>,
+    /// The dart by which it comes in next, if it notices the next junction or dead end.
+    next: Option<Dart>,
     /// The dart by which it has truly come in, when it last derived where it is.
     pub(super) truth: Option<Dart>,
     pub(super) tally: PerceptTally,
 }
 
-/// A robot this near to the middle of a junction passes it, and one this far from it has left it, in metres.
-const PASSES: f64 = 0.5;
-const LEFT: f64 = 5.0;
-
 impl<'w> PerceptJudge<'w> {
     pub(super) fn new(world: &'w CorridorWorld, smoothed: &'w SmoothedWorld) -> Self {
-        let (here, passed, truth) = (None, Vec::new(), None);
-        Self { world, smoothed, turn: 0.0, here, passed, truth, tally: PerceptTally::default() }
+        let (next, truth) = (None, None);
+        Self { world, smoothed, turn: 0.0, next, truth, tally: PerceptTally::default() }
     }
 
     /// The dart by which a robot has truly come in, from a direction on the plan.
@@ -216,50 +213,28 @@ impl<'w> PerceptJudge<'w> {
             wrapped(direction(from, to) - entry).abs()
         })
     }
-
-    /// The junction whose middle is nearest to the robot, within a distance.
-    fn junction_within(&self, robot: Point2<f64>, within: f64) -> Option<usize> {
-        let off = |place: &usize| distance(self.world.places[*place], robot);
-        let places = (0..self.world.places.len()).filter(|place| self.world.is_junction(*place));
-        nearest(places, off).filter(|place| off(place) < within)
-    }
-
-    fn pass(&mut self, robot: Point2<f64>) {
-        let has_left = |here: &mut (usize, bool)| {
-            let (place, _) = *here;
-            distance(self.world.places[place], robot) > LEFT
-        };
-        // It may drive into an arm and come back.
-        let left = self.here.take_if(has_left).filter(|(_, is_derived)| !is_derived);
-        self.passed.extend(left.map(|(place, _)| place));
-        let here = self.junction_within(robot, PASSES).map(|place| (place, false));
-        self.here = self.here.or(here);
-    }
-
-    /// The robot has derived that it is at a junction, or at a dead end.
-    fn arrive(&mut self, robot: Point2<f64>) {
-        let here = self.junction_within(robot, LEFT);
-        let others = self.passed.drain(..).filter(|place| Some(*place) != here);
-        self.tally.passed += others.count() as u64;
-        self.here = here.map(|place| (place, true));
-    }
 }
 
 impl RunObserver for PerceptJudge<'_> {
     fn event(&mut self, event: &Event) {
         let Some(Pose { position, heading }) = event.truth else { return };
         match &event.kind {
-            EventKind::Frame(frame) => {
-                self.turn = wrapped(heading - frame.odometry.heading);
-                self.pass(position.into());
+            EventKind::Frame(frame) => self.turn = wrapped(heading - frame.odometry.heading),
+            EventKind::Door { door, .. } => {
+                let graph = &self.smoothed.graph;
+                self.next = self.truth.map(|dart| graph.opposite(graph.behind(dart, *door)));
             }
-            EventKind::Arrival(Arrival { degree, entry: Some(entry), .. }) => {
+            EventKind::Arrival(Arrival { number, degree, entry: Some(entry), .. }) => {
                 self.truth = self.truly_at(position.into(), wrapped(entry + self.turn));
-                let degree_of = |dart| self.smoothed.graph.degree_around(dart);
-                let is_true = self.truth.is_some_and(|dart| degree_of(dart) == *degree);
+                let graph = &self.smoothed.graph;
+                let is_true = self.truth.is_some_and(|dart| graph.degree_around(dart) == *degree);
                 self.tally.percepts += 1;
                 self.tally.wrong += u64::from(!is_true);
-                self.arrive(position.into());
+                // A robot that got lost may come to another one.
+                let next = self.next.take().filter(|_| number.is_some());
+                if let (Some(next), Some(truth)) = (next, self.truth) {
+                    self.tally.passed += u64::from(graph.vertex(next) != graph.vertex(truth));
+                }
             }
             _ => {}
         }

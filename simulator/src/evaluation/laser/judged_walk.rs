@@ -7,7 +7,7 @@ use toposlam_model::{
     enumerate::Watch,
 };
 use toposlam_vision::{
-    geometry::{distance, motion_between},
+    geometry::{clockwise, distance, motion_between, nearest},
     laser::{params::LaserParams, scan_log::ScanLog},
     place::{PlaceView, SeenPlace},
     visits::{Visit, VisitPercept, logged_visits},
@@ -15,8 +15,7 @@ use toposlam_vision::{
 
 use super::{
     corridor_world::{BuildingKind, CorridorWorld},
-    nearest,
-    walk::{LaserWalk, PassedPlace, clockwise},
+    walk::{LaserWalk, PassedPlace},
 };
 use crate::{
     LaserScanner, ScannerParams,

@@ -7,5 +7,3 @@ pub mod judged_walk;
 pub mod laser_report;
 pub mod scanned_run;
 pub mod walk;
-
-use crate::truth::nearest;

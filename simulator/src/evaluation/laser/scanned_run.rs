@@ -116,11 +116,23 @@ impl WalkSampler {
         method: MappingMethod,
         observer: &mut dyn RunObserver,
     ) -> Option<ScannedRun> {
+        self.run_by(number, method, observer, |_, _| {}).map(|(run, _)| run)
+    }
+
+    /// The same by a robot that is changed before it begins, by its building, and the doors that are blocked.
+    fn run_by(
+        &self,
+        number: u64,
+        method: MappingMethod,
+        observer: &mut dyn RunObserver,
+        change: impl Fn(&CorridorWorld, &mut CorridorRobot),
+    ) -> Option<(ScannedRun, usize)> {
         let RunStart { world, smoothed, facing, pose, drift } = self.start(number)?;
         let seed = self.run_seed(number);
         let scanner = self.scanner(&world, number, seed);
         let marker = smoothed.corridors[facing.at()];
-        let robot = CorridorRobot::new(&world, scanner, pose, drift, marker, seed);
+        let mut robot = CorridorRobot::new(&world, scanner, pose, drift, marker, seed);
+        change(&world, &mut robot);
         let mut judge = PerceptJudge::new(&world, &smoothed);
         let mut explorer =
             CorridorExplorer::new(robot, &self.sensing, (&mut judge, &mut *observer));
@@ -130,6 +142,7 @@ impl WalkSampler {
         let (moves, recoveries) = mapped
             .as_ref()
             .map_or((mapping.moves(), 0), |mapped| (mapped.moves, mapped.recoveries));
+        let blocked = mapped.as_ref().map_or(0, |mapped| mapped.blocked.len());
         let outcome = match mapped {
             Err(MappingError::World(ExplorerError::Stopped { .. })) => return None,
             Err(error) => RobotOutcome::GaveUp(error.to_string()),
@@ -151,17 +164,20 @@ impl WalkSampler {
                 }
             }
         };
-        Some(ScannedRun { number, moves, way, recoveries, tally: judge.tally, outcome })
+        let tally = judge.tally;
+        Some((ScannedRun { number, moves, way, recoveries, tally, outcome }, blocked))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::center;
     use toposlam_model::mapping::{MappingAlgorithm, RecoveryConfig};
-    use toposlam_vision::laser::params::LaserParams;
+    use toposlam_model::percept::Door;
+    use toposlam_vision::{geometry::direction, laser::params::LaserParams};
 
     use super::{super::corridor_world::BuildingKind, *};
-    use crate::ScannerParams;
+    use crate::{ConvexPolygon, ScannerParams};
 
     fn sampler(buildings: BuildingKind, seed: u64) -> WalkSampler {
         let (scanner, sensing) = (None, LaserParams::default());
@@ -211,12 +227,35 @@ mod tests {
         }
     }
 
+    /// An obstacle that no scan shows, across the corridor behind the one in which the robot begins.
+    #[test]
+    fn what_stops_a_robot_is_no_dead_end() {
+        let scanner = Some(ScannerParams::PLAIN);
+        let sampler = WalkSampler { scanner, ..sampler(BuildingKind::Long, 1) };
+        let RunStart { smoothed, facing, .. } = sampler.start(0).unwrap();
+        let [from, to] = smoothed.corridors[smoothed.graph.behind(facing, Door(1)).at()];
+        let block = |world: &CorridorWorld, robot: &mut CorridorRobot| {
+            let [from, to] = [from, to].map(|place| world.places[place]);
+            let middle = center(&from, &to);
+            let half = [0.3, 4.0];
+            robot.obstacle = Some(ConvexPolygon::rectangle(middle, half, direction(from, to)));
+        };
+        let (run, _) = sampler.run_by(0, folding(), &mut (), block).unwrap();
+        let RobotOutcome::GaveUp(why) = &run.outcome else { panic!("{run:?}") };
+        assert!(why.contains("something stops the robot"), "{why}");
+        assert_eq!(run.tally.wrong, 0, "{run:?}");
+        let recovering = MappingMethod::Recovering(RecoveryConfig::default());
+        let (run, blocked) = sampler.run_by(0, recovering, &mut (), block).unwrap();
+        assert!(blocked > 0 || matches!(run.outcome, RobotOutcome::GaveUp(_)), "{run:?}");
+    }
+
     /// In this run what the robot derives contradicts itself.
     #[test]
     fn a_robot_that_recovers_ends_right_after_percepts_that_are_wrong() {
         let sampler = sampler(BuildingKind::Long, 4);
         let without = sampler.run(11, folding(), &()).unwrap();
-        assert!(matches!(without.outcome, RobotOutcome::GaveUp(_)), "{without:?}");
+        let RobotOutcome::GaveUp(why) = &without.outcome else { panic!("{without:?}") };
+        assert!(why.contains("contradicts itself"), "{why}");
         let recovering = MappingMethod::Recovering(RecoveryConfig::default());
         let with = sampler.run(11, recovering, &()).unwrap();
         assert_eq!(with.outcome, RobotOutcome::Right, "{with:?}");

@@ -1,6 +1,6 @@
 //! A random walk through a random building, and where the robot is on it.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use nalgebra::{Point2, Rotation2, Vector2, center};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
@@ -184,13 +184,10 @@ impl WalkDriver {
     }
 }
 
-/// The clockwise angle from one direction to another, in radians, from 0 to a full turn.
-pub fn clockwise(from: f64, to: f64) -> f64 {
-    (from - to).rem_euclid(TAU)
-}
-
 #[cfg(test)]
 mod tests {
+    use toposlam_vision::geometry::clockwise;
+
     use super::{super::corridor_world::BuildingKind, *};
 
     fn walk(seed: u64, drift: f64) -> (CorridorWorld, LaserWalk) {

@@ -1,0 +1,285 @@
+//! What a robot in corridors takes for a junction: by what it sees there, and by driving into its arms.
+
+use std::f64::consts::{PI, TAU};
+
+use toposlam_logs::record::RunObserver;
+use toposlam_model::driving::scene::wrapped;
+use toposlam_vision::{
+    geometry::{clockwise, direction, distance, nearest},
+    laser::navigation::OpeningLimits,
+    place::{Certainty, PlaceArm, SeenPlace},
+};
+
+use super::{CorridorExplorer, CorridorFailure, LeftPlace, ROBOT, SideTrip, Stop, motion::NoWay};
+use crate::robot::Robot;
+
+/// Whether a way is an arm; `None` if that is undecided.
+type IsArm = Option<bool>;
+
+impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
+    /// Where any ways of the local map meet this near to the robot.
+    pub(super) fn opening(&self, near: f64) -> Option<SeenPlace> {
+        let limits = OpeningLimits { near, together: ROBOT.one_opening };
+        self.local_map()?.opening(self.on_local_map(), limits)
+    }
+
+    /// Decides which doors a place has, and stands there; false if it is no junction.
+    pub(super) fn decide(&mut self, mut place: SeenPlace, entry: f64) -> Result<bool, Stop> {
+        let doors = if self.sees_arms {
+            self.doors_of(&mut place, entry)
+        } else {
+            self.driven_doors(&place, entry)
+        };
+        let is_junction = self.sees_arms || !matches!(doors, Ok(None));
+        let SeenPlace { centre, clearance: extent, .. } = place;
+        self.left = Some(LeftPlace { centre, extent, is_junction });
+        // It goes on where it would have gone.
+        self.heading = wrapped(entry + PI);
+        let Some(doors) = doors? else { return Ok(false) };
+        self.stand(self.odometry_from_map * centre, extent, doors)?;
+        Ok(true)
+    }
+
+    /// The directions of the doors of the place where it stands, clockwise from the entry, if the robot drives into each way that
+    /// leaves an opening, the one straight on last; `None` if it is no junction.
+    fn driven_doors(&mut self, opening: &SeenPlace, entry: f64) -> Result<Option<Vec<f64>>, Stop> {
+        self.look_around()?;
+        let mut doors = vec![entry];
+        let mut tried: Vec<f64> = Vec::new();
+        for _ in 0..ROBOT.looks {
+            let is_old = |way: f64, old: f64| wrapped(way - old).abs() < ROBOT.same_way;
+            let is_new = |way: &f64| !doors.iter().chain(&tried).any(|&old| is_old(*way, old));
+            let mut ways: Vec<f64> =
+                self.ways_of(opening).into_iter().filter(|way| is_new(way)).collect();
+            if doors.len() + ways.len() < 3 {
+                break;
+            }
+            let straight_on = |way: f64| wrapped(way - entry - PI).abs();
+            ways.sort_by(|&one, &other| straight_on(other).total_cmp(&straight_on(one)));
+            let Some(&way) = ways.first() else { break };
+            let (driven, is_arm) = self.look_into(way, true)?;
+            tried.push(way);
+            let is_arm = is_arm.ok_or(CorridorFailure::Undecided)?;
+            if is_arm && !doors.iter().any(|&door| is_same(door, driven)) {
+                doors.push(driven);
+            }
+        }
+        in_order(doors, entry)
+    }
+
+    /// The directions of the ways that leave an opening in at least two of the views there.
+    fn ways_of(&self, opening: &SeenPlace) -> Vec<f64> {
+        let mut ways: Vec<(f64, usize)> = Vec::new();
+        let here = |seen: &&SeenPlace| distance(seen.centre, opening.centre) < ROBOT.same_place;
+        for seen in self.openings.iter().flatten().filter(here) {
+            for direction in seen.directions() {
+                match ways.iter_mut().find(|way| wrapped(way.0 - direction).abs() < ROBOT.same_way)
+                {
+                    Some(way) => way.1 += 1,
+                    None => ways.push((direction, 1)),
+                }
+            }
+        }
+        let turn = self.turn_of_map();
+        ways.into_iter().filter(|way| way.1 > 1).map(|way| wrapped(way.0 + turn)).collect()
+    }
+
+    /// The same by what the robot sees. The place becomes the one that it has seen last.
+    fn doors_of(&mut self, last: &mut SeenPlace, entry: f64) -> Result<Option<Vec<f64>>, Stop> {
+        self.look_around()?;
+        // The directions of the arms that it has looked into, and whether they are arms.
+        let mut known: Vec<(f64, bool)> = Vec::new();
+        let (mut has_moved, mut tries) = (false, 0);
+        for _ in 0..ROBOT.looks {
+            let Some(place) = self.visits.status() else {
+                let robot = self.on_local_map();
+                let off = |seen: &&SeenPlace| distance(seen.centre, robot);
+                let near = nearest(self.seen.last().into_iter().flatten(), off)
+                    .filter(|seen| off(seen) < ROBOT.same_place && !has_moved);
+                let Some(seen) = near.cloned() else { return Ok(None) };
+                has_moved = true;
+                self.go_to(&seen)?;
+                self.look_around()?;
+                continue;
+            };
+            let turn = self.turn_of_map();
+            last.clone_from(&place);
+            let is_known = |arm: f64| known.iter().any(|known| is_same(known.0, arm));
+            let uncertain = self.uncertain_arms(&place).into_iter().map(|arm| wrapped(arm + turn));
+            let next = uncertain.into_iter().find(|&arm| !is_same(arm, entry) && !is_known(arm));
+            if let Some(arm) = next {
+                let (_, is_arm) = self.look_into(arm, false)?;
+                known.push((arm, is_arm.ok_or(CorridorFailure::Undecided)?));
+                continue;
+            }
+            let is_undecided = place.arms.iter().any(|arm| arm.certainty == Certainty::Possible);
+            if is_undecided && known.is_empty() {
+                if tries == 2 {
+                    return Err(CorridorFailure::Undecided.into());
+                }
+                tries += 1;
+                self.look_from_further(entry + PI * f64::from(tries))?;
+                continue;
+            }
+            let doors: Vec<f64> = if is_undecided {
+                let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
+                seen_at(view, &place).into_iter().flat_map(SeenPlace::directions).collect()
+            } else {
+                place.arms.iter().filter(|arm| arm.is_certain()).map(|arm| arm.direction).collect()
+            };
+            let mut doors: Vec<f64> = doors.into_iter().map(|door| wrapped(door + turn)).collect();
+            for &(arm, is_arm) in &known {
+                if !is_arm {
+                    doors.retain(|&door| !is_same(door, arm));
+                } else if !doors.iter().any(|&door| is_same(door, arm)) {
+                    doors.push(arm);
+                }
+            }
+            return in_order(doors, entry);
+        }
+        Err(CorridorFailure::Undecided.into())
+    }
+
+    /// Drives into an arm and back. Returns the direction in which it drove, and whether it could drive as far as makes an
+    /// arm. If the place is to be seen from nearby only, what is seen from farther away is forgotten.
+    fn look_into(&mut self, towards: f64, from_nearby: bool) -> Result<(f64, IsArm), Stop> {
+        let (first, begin) = (self.trail.len(), self.at());
+        if from_nearby {
+            let visits = self.visits.clone();
+            self.side_trip = Some(SideTrip { from: begin, visits, near: Vec::new() });
+        }
+        self.heading = towards;
+        let least = self.params.arm.min_arm;
+        let (mut length, mut is_leaving) = (0.0, true);
+        let is_arm = loop {
+            let before = self.at();
+            let no_way = self.step(is_leaving)?;
+            is_leaving = false;
+            length += distance(before, self.at());
+            match no_way {
+                _ if length >= least => break Some(true),
+                None => {}
+                Some(NoWay::Wall(left)) => break Some(length + left >= least),
+                Some(NoWay::Unseen | NoWay::Obstacle) => break None,
+            }
+        };
+        let far = self.at();
+        self.drive_back(first, begin)?;
+        self.trail.end_side_trip(first);
+        if let Some(SideTrip { visits, near, .. }) = self.side_trip.take() {
+            self.visits = visits;
+            for (scan, odometry) in near {
+                if let Some(view) = self.visits.add_frame((), &scan, &odometry) {
+                    self.odometry_from_map = view.odometry_from_map;
+                }
+            }
+        }
+        self.look_around()?;
+        // It may have gone through the middle of the place first.
+        let driven =
+            if distance(begin, far) > ROBOT.step { direction(begin, far) } else { towards };
+        Ok((driven, is_arm))
+    }
+
+    /// Goes a little further, looks around there, and comes back.
+    fn look_from_further(&mut self, towards: f64) -> Result<(), Stop> {
+        let begin = self.at();
+        let way = self.way;
+        self.heading = towards;
+        let mut is_leaving = true;
+        while self.way - way < ROBOT.further && self.step(is_leaving)?.is_none() {
+            is_leaving = false;
+        }
+        self.turn_around()?;
+        self.drive_along([begin])?;
+        self.look_around()
+    }
+
+    /// The directions of the arms of a place on the local map that are not certain in most of the last views.
+    fn uncertain_arms(&self, place: &SeenPlace) -> Vec<f64> {
+        let views = &self.seen[self.seen.len().saturating_sub(ROBOT.views)..];
+        // The direction, the number of views that show the arm, and of those in which it is certain.
+        let mut arms: Vec<(f64, usize, usize)> = Vec::new();
+        for seen in views.iter().filter_map(|view| seen_at(view, place)) {
+            for arm @ &PlaceArm { direction, .. } in &seen.arms {
+                let certain = usize::from(arm.is_certain());
+                match arms.iter_mut().find(|known| is_same(known.0, direction)) {
+                    Some(known) => (known.1, known.2) = (known.1 + 1, known.2 + certain),
+                    None => arms.push((direction, 1, certain)),
+                }
+            }
+        }
+        let enough = (ROBOT.certain * views.len() as f64).ceil() as usize;
+        let uncertain = arms.iter().filter(|arm| arm.1 > 1 && arm.2 < enough);
+        uncertain.map(|&(arm, ..)| arm).collect()
+    }
+
+    /// The direction from a place to where the robot was before.
+    pub(super) fn came_from(&self, place: &SeenPlace) -> f64 {
+        let centre = self.odometry_from_map * place.centre;
+        // It may have passed the place at a distance.
+        let last = self.trail.without_side_trips().next().map_or(0.0, |at| distance(at, centre));
+        let far = (place.clearance.max(1.0) + ROBOT.came_from).max(last + 0.1);
+        let before = self.trail.before_entering(centre, far);
+        before.map_or(wrapped(self.heading + PI), |point| direction(centre, point))
+    }
+
+    /// Whether a place is the one that it left last.
+    pub(super) fn is_left(&self, place: &SeenPlace) -> bool {
+        self.left.is_some_and(|left| {
+            let reach = if left.is_junction {
+                ROBOT.left_behind.max(1.5 * left.extent)
+            } else {
+                ROBOT.no_junction
+            };
+            distance(left.centre, place.centre) < reach
+        })
+    }
+}
+
+/// What may be a junction at a place, in a view.
+fn seen_at<'v>(view: &'v [SeenPlace], place: &SeenPlace) -> Option<&'v SeenPlace> {
+    let off = |seen: &&SeenPlace| distance(seen.centre, place.centre);
+    nearest(view, off).filter(|seen| off(seen) < place.clearance.max(ROBOT.at_centre))
+}
+
+fn is_same(one: f64, other: f64) -> bool {
+    wrapped(one - other).abs() < ROBOT.same_arm
+}
+
+/// The directions of doors, clockwise from the one by which the robot came in, from about this direction; `None` if they are
+/// fewer than three.
+fn in_order(mut doors: Vec<f64>, entry: f64) -> Result<Option<Vec<f64>>, Stop> {
+    if doors.len() < 3 {
+        return Ok(None);
+    }
+    let off = |door: &f64| wrapped(door - entry).abs();
+    let first = nearest(doors.iter().copied(), off).filter(|door| off(door) < ROBOT.entry);
+    let first = first.ok_or(CorridorFailure::Undecided)?;
+    let turn = |door: f64| {
+        let turn = clockwise(first, door);
+        if turn > TAU - 1e-9 { 0.0 } else { turn }
+    };
+    doors.sort_by(|&one, &other| turn(one).total_cmp(&turn(other)));
+    Ok(Some(doors))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn doors_are_clockwise_from_the_one_by_which_the_robot_came() {
+        let order = |doors: &[f64], entry| match in_order(doors.to_vec(), entry) {
+            Ok(doors) => doors,
+            Err(Stop::Failure(CorridorFailure::Undecided)) => Some(Vec::new()),
+            Err(_) => panic!(),
+        };
+        let doors = [0.1, 1.7, -3.0];
+        assert_eq!(order(&doors, -3.1), Some(vec![-3.0, 1.7, 0.1]));
+        assert_eq!(order(&doors, 1.5), Some(vec![1.7, 0.1, -3.0]));
+        assert_eq!(order(&doors[..2], 0.0), None, "two doors are none of a junction");
+        // Nobody knows which door is the one that the robot drove.
+        assert_eq!(order(&doors, -1.4), Some(Vec::new()));
+    }
+}
