@@ -25,12 +25,12 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// Decides which doors a place has, and stands there; false if it is no junction.
     pub(super) fn decide(&mut self, mut place: SeenPlace, entry: f64) -> Result<bool, Stop> {
-        let doors = if self.sees_arms {
+        let doors = if self.scanner.sees_arms {
             self.doors_of(&mut place, entry)
         } else {
             self.driven_doors(&place, entry)
         };
-        let is_junction = self.sees_arms || !matches!(doors, Ok(None));
+        let is_junction = self.scanner.sees_arms || !matches!(doors, Ok(None));
         let SeenPlace { centre, clearance: extent, .. } = place;
         self.left = Some(LeftPlace { centre, extent, is_junction });
         // It goes on where it would have gone.

@@ -56,9 +56,8 @@ pub struct CorridorExplorer<R, O = ()> {
     way_to_last: f64,
     /// The direction in which it drove last.
     heading: f64,
-    /// Whether its scanner sees arms far enough, and all round; known after the first scan.
-    sees_arms: bool,
-    sees_all_round: bool,
+    /// Known after the first scan.
+    scanner: ScannerReach,
     /// From the local map to the frame of odometry, in the last view.
     odometry_from_map: Isometry2<f64>,
     /// What may be junctions, in each view since it began to look around.
@@ -85,6 +84,13 @@ pub struct CorridorExplorer<R, O = ()> {
     door: Option<Door>,
     allowance: Allowance,
     last: Option<Frame>,
+}
+
+/// Whether a scanner sees arms far enough, and all round.
+#[derive(Clone, Copy, Debug, Default)]
+struct ScannerReach {
+    sees_arms: bool,
+    sees_all_round: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -141,8 +147,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             way: 0.0,
             way_to_last: 0.0,
             heading,
-            sees_arms: false,
-            sees_all_round: false,
+            scanner: ScannerReach::default(),
             odometry_from_map: Isometry2::identity(),
             seen: Vec::new(),
             openings: Vec::new(),
@@ -243,8 +248,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         if self.trail.is_empty() {
             // A scanner that does not know its range may see no farther than any other.
             let range = scan.geometry().range_max;
-            self.sees_arms = range.is_finite() && range >= ROBOT.sees_arms;
-            self.sees_all_round = scan.field_of_view() > ROBOT.all_around;
+            self.scanner = ScannerReach {
+                sees_arms: range.is_finite() && range >= ROBOT.sees_arms,
+                sees_all_round: scan.field_of_view() > ROBOT.all_around,
+            };
         }
         self.trail.push(odometry.position.into());
         if let Some(MarkerView { position, .. }) = marker {
@@ -260,7 +267,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 }
                 is_near
             });
-            if is_near && self.sees_arms {
+            if is_near && self.scanner.sees_arms {
                 self.is_at_opening = self.is_opening();
             } else if is_near {
                 self.openings.push(self.opening(ROBOT.near_opening));
@@ -286,7 +293,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             distance(at, robot) < ROBOT.looked && self.way - way < ROBOT.look_memory
         });
         !has_looked
-            && !self.sees_all_round
+            && !self.scanner.sees_all_round
             && self.local_map().is_some_and(|map| map.meets_near(robot, ROBOT.opening))
     }
 

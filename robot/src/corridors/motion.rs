@@ -134,7 +134,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 }
             }
             is_leaving = false;
-            let place = if self.sees_arms {
+            let place = if self.scanner.sees_arms {
                 self.visits.status()
             } else {
                 self.openings.last().cloned().flatten()
@@ -142,7 +142,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             let place = place.filter(|place| !self.is_left(place));
             let place = place.map(|place| (distance(place.centre, self.on_local_map()), place));
             match (place, &closest) {
-                (None, None) if self.is_at_opening && self.sees_arms => {
+                (None, None) if self.is_at_opening && self.scanner.sees_arms => {
                     self.look_around()?;
                     return Ok(StretchEnd::LookedAround);
                 }
@@ -156,7 +156,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             }
         }
         let Some((_, mut place)) = closest else { return Err(CorridorFailure::Missed.into()) };
-        if self.sees_arms {
+        if self.scanner.sees_arms {
             let entry = self.came_from(&place);
             self.go_to(&place)?;
             return Ok(StretchEnd::AtPlace(place, entry));
@@ -236,7 +236,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         let mut turn = at.seen(direction(at.position, point));
         // A scanner that does not see all round sees what it passes while it turns.
         for _ in 0..ROBOT.turns {
-            if self.sees_all_round || turn.abs() <= ROBOT.turn {
+            if self.scanner.sees_all_round || turn.abs() <= ROBOT.turn {
                 break;
             }
             let part = ROBOT.turn.copysign(turn);
@@ -315,7 +315,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// Turns around once where it is.
     pub(super) fn turn_around(&mut self) -> Result<(), Stop> {
-        let parts = if self.sees_all_round { ROBOT.round_views } else { ROBOT.sector_views };
+        let parts =
+            if self.scanner.sees_all_round { ROBOT.round_views } else { ROBOT.sector_views };
         for _ in 0..parts {
             self.robot.turn(TAU / parts as f64)?;
             self.sense()?;
