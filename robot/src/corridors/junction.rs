@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use nalgebra::Point2;
 use toposlam_logs::record::RunObserver;
 use toposlam_model::driving::scene::wrapped;
 use toposlam_vision::{
@@ -17,10 +18,10 @@ use crate::robot::Robot;
 type IsArm = Option<bool>;
 
 impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
-    /// Where any ways of the local map meet this near to the robot.
-    pub(super) fn opening(&self, near: f64) -> Option<SeenPlace> {
-        let limits = OpeningLimits { near, together: ROBOT.one_opening };
-        self.local_map()?.opening(self.on_local_map(), limits)
+    /// Where any ways of the local map meet near a point.
+    pub(super) fn opening_at(&self, point: Point2<f64>) -> Option<SeenPlace> {
+        let limits = OpeningLimits { near: ROBOT.near_opening, together: ROBOT.one_opening };
+        self.local_map()?.opening(point, limits)
     }
 
     /// Decides which doors a place has, and stands there; false if it is no junction.

@@ -270,7 +270,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             if is_near && self.scanner.sees_arms {
                 self.is_at_opening = self.is_opening();
             } else if is_near {
-                self.openings.push(self.opening(ROBOT.near_opening));
+                self.openings.push(self.opening_at(self.on_local_map()));
             }
             if is_near {
                 self.seen.push(view.possible_places);

@@ -284,10 +284,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     fn see_all_of(&mut self, opening: &mut SeenPlace) -> Result<(), Stop> {
         let begin = self.way;
         while self.way - begin < ROBOT.past_opening && self.step(false)?.is_none() {}
-        let within = ROBOT.past_opening + ROBOT.near_opening;
-        if let Some(seen) = self.opening(within)
-            && !self.is_left(&seen)
-        {
+        // There may be another one where it is now.
+        if let Some(seen) = self.opening_at(opening.centre) {
             *opening = seen;
         }
         Ok(())
