@@ -16,13 +16,14 @@ use std::{
 
 use futures::StreamExt;
 use rustdds::{
-    DomainParticipant, DomainParticipantBuilder, Publisher, QosPolicies, QosPolicyBuilder,
+    DomainParticipant, DomainParticipantBuilder, GUID, Publisher, QosPolicies, QosPolicyBuilder,
     RTPSEntity, RepresentationIdentifier, SampleIdentity, Subscriber, Topic, TopicKind,
     WriteOptionsBuilder,
     bytes::Bytes,
     dds::qos::policy::{DataRepresentation, DataRepresentationId},
     no_key::{
-        DataReader, DataWriter, Decode, DefaultDecoder, DeserializerAdapter, SerializerAdapter,
+        DataReader, DataSample, DataWriter, Decode, DefaultDecoder, DeserializerAdapter,
+        SerializerAdapter,
     },
     policy::{Durability, History, Reliability},
 };
@@ -215,17 +216,30 @@ impl DdsNode {
         mut received: impl FnMut(Option<EncodedBody>) + Send + 'static,
     ) -> Result<(), RobotError> {
         let qos = if stays { reliable(Durability::TransientLocal, DEPTH) } else { best_effort() };
+        self.listen_to_writers(topic, type_name, qos, move |_, message| received(message))
+    }
+
+    /// Calls a function with each message of a topic, and the writer of those that came whole.
+    fn listen_to_writers(
+        &self,
+        topic: &str,
+        type_name: &str,
+        qos: QosPolicies,
+        mut received: impl FnMut(Option<GUID>, Option<EncodedBody>) + Send + 'static,
+    ) -> Result<(), RobotError> {
         let reader = self.reader(self.dds_name(topic), type_name, qos)?;
         self.spawn(async move {
-            let mut messages = reader.async_bare_sample_stream();
+            let mut messages = reader.async_sample_stream();
             while let Some(message) = messages.next().await {
-                received(message.ok());
+                let message = message.ok();
+                let writer = message.as_ref().map(|sample| sample.sample_info().writer_guid());
+                received(writer, message.map(DataSample::into_value));
             }
         });
         Ok(())
     }
 
-    /// Subscribes to a topic. Messages that cannot be read are counted and skipped.
+    /// Subscribes to a topic of one other node. Messages that cannot be read are counted and skipped.
     pub(super) fn subscribe<T: Send + 'static>(
         &self,
         topic: &str,
@@ -233,7 +247,11 @@ impl DdsNode {
         read: impl Fn(&EncodedBody) -> Option<T> + Send + 'static,
     ) -> Result<Subscription<T>, RobotError> {
         let (inbox, subscription) = topic::subscription(topic);
-        self.listen(topic, type_name, false, move |message| {
+        let mut sources = MessageSources::default();
+        self.listen_to_writers(topic, type_name, best_effort(), move |writer, message| {
+            if writer.is_some_and(|writer| sources.are_two(writer)) {
+                inbox.record_two_sources();
+            }
             inbox.add(message.and_then(|body| read(&body)));
         })?;
         Ok(subscription)
@@ -330,11 +348,14 @@ impl DdsNode {
         }
     }
 
-    /// The types of a topic that others publish.
+    /// The types of a topic that others publish, each with why it cannot be read, if so.
     pub(super) fn published_types(&self, topic: &str) -> BTreeSet<String> {
         let endpoints = self.endpoints(&self.dds_name(topic), OtherSide::Publishes);
-        let plain = endpoints.into_iter().filter(|(_, obstacle)| obstacle.is_none());
-        plain.map(|(kind, _)| ros_type(&kind)).collect()
+        let described = endpoints.into_iter().map(|(kind, obstacle)| match obstacle {
+            Some(obstacle) => format!("{} {obstacle}", ros_type(&kind)),
+            None => ros_type(&kind),
+        });
+        described.collect()
     }
 
     /// The type of each endpoint of a topic that others have, and why no message would pass between it and ours, if none
@@ -362,6 +383,31 @@ impl DdsNode {
                 described.collect()
             }
         }
+    }
+}
+
+/// The writers of the messages of a topic.
+#[derive(Default)]
+struct MessageSources {
+    last: Option<GUID>,
+    /// Those before it, the last of them at the end.
+    earlier: Vec<GUID>,
+}
+
+/// The number of earlier writers that are kept.
+const EARLIER: usize = 16;
+
+impl MessageSources {
+    /// Whether the writer of a message sends by turns with another one. A robot that starts again has a new writer, and the
+    /// old one sends nothing more.
+    fn are_two(&mut self, writer: GUID) -> bool {
+        if self.last == Some(writer) {
+            return false;
+        }
+        self.earlier.extend(self.last.replace(writer));
+        let kept = self.earlier.len().saturating_sub(EARLIER);
+        self.earlier.drain(..kept);
+        self.earlier.contains(&writer)
     }
 }
 
