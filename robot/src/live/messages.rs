@@ -60,8 +60,8 @@ pub(crate) struct MarkerReading {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ScanReading {
     pub(crate) frame: String,
-    geometry: ScanGeometry,
-    ranges: Vec<f32>,
+    pub(super) geometry: ScanGeometry,
+    pub(super) ranges: Vec<f32>,
 }
 
 /// Bytes or a text, after their length; a text need not be UTF-8.

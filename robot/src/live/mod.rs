@@ -5,6 +5,8 @@
 //! They have no other connection.
 
 mod base;
+#[cfg(test)]
+mod message_tests;
 pub(crate) mod messages;
 #[cfg(test)]
 mod motion_tests;

@@ -77,8 +77,17 @@ impl LiveRobot {
         patience: Duration,
         stop: fn() -> bool,
     ) -> Result<Self, RobotError> {
+        Self::within(patience.max(FIRST), connection, patience, stop)
+    }
+
+    /// The same if the first messages come within a time.
+    pub(super) fn within(
+        first: Duration,
+        connection: Connection,
+        patience: Duration,
+        stop: fn() -> bool,
+    ) -> Result<Self, RobotError> {
         let Connection { wheels, odometry, sensor, node } = connection;
-        let first = patience.max(FIRST);
         let (messages, scanner) = match sensor {
             SensorTopics::Camera(images) => (SensorMessages::Images(images), None),
             SensorTopics::Laser { scans, markers } => {

@@ -256,9 +256,13 @@ fn direction(from: &[f64; 2], to: &[f64; 2]) -> f64 {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, TAU};
 
-    use toposlam_vision::laser::scan::ScanGeometry;
+    use toposlam_vision::laser::scan::{ScanError, ScanGeometry};
 
     use super::*;
+    use crate::live::{
+        messages::SECOND,
+        topic::{Inbox, subscription},
+    };
 
     /// A scan of 360 degrees with a surface at one bearing, in degrees, and nothing elsewhere.
     fn scan(degrees: usize, range: f32, missing: std::ops::Range<usize>) -> Scan {
@@ -274,41 +278,144 @@ mod tests {
         Scan::new(geometry, ranges, Mount::centre().robot_from_scanner).unwrap()
     }
 
+    /// The same with other limits and ranges.
+    fn all_round(range_min: f64, range: impl Fn(usize) -> f32) -> Scan {
+        let geometry = ScanGeometry { range_min, ..scan(0, 1.0, 0..0).geometry() };
+        let ranges = (0..360).map(range).collect();
+        Scan::new(geometry, ranges, Mount::centre().robot_from_scanner).unwrap()
+    }
+
+    fn room(scan: &Scan, then: &Odometry, now: &Odometry) -> f64 {
+        view(scan, &Body::default(), then, now).unwrap_or(0.0)
+    }
+
+    fn view_from_here(scan: &Scan) -> Option<f64> {
+        view(scan, &Body::default(), &Odometry::default(), &Odometry::default())
+    }
+
     #[test]
     fn there_is_room_up_to_what_is_in_the_way_of_the_robots_circle() {
-        let here = Odometry::default();
-        let room = |scan: &Scan| room(scan, &here, &here);
+        let room = |scan: &Scan| view_from_here(scan).unwrap();
         assert!((room(&scan(0, 1.0, 0..0)) - (1.0 - RADIUS - CLEARANCE)).abs() < 1e-6);
         // 11 degrees aside at 1 m is 0.19 m beside the way, 12 degrees is 0.208 m.
         assert!(room(&scan(11, 1.0, 0..0)) < 0.75);
         assert_eq!(room(&scan(12, 1.0, 0..0)), f64::INFINITY);
-        // What is behind, and the robot itself, are not in the way.
+        // What is behind is not in the way.
         assert_eq!(room(&scan(180, 0.3, 0..0)), f64::INFINITY);
-        assert_eq!(room(&scan(0, 0.15, 0..0)), f64::INFINITY);
         // It is too close already.
         assert_eq!(room(&scan(0, 0.3, 0..0)), 0.0);
     }
 
     #[test]
-    fn there_is_no_room_where_the_laser_does_not_look() {
+    fn what_is_in_the_robots_circle_from_the_first_scan_on_is_the_robot_and_what_comes_later_is_not()
+     {
         let here = Odometry::default();
-        let blind = scan(90, 1.0, 0..45);
-        let sees = scan(90, 1.0, 1..45);
+        let body = Body::new(&scan(20, 0.15, 0..0));
+        let room = |degrees, range| view(&scan(degrees, range, 0..0), &body, &here, &here);
+        assert_eq!(room(20, 0.15), Some(f64::INFINITY));
+        assert_eq!(room(22, 0.16), Some(f64::INFINITY));
+        assert_eq!(room(30, 0.15), Some(0.0));
+        assert_eq!(room(0, 0.15), Some(0.0));
+        // Nearer than the scanner can measure, and so near that it gives no range.
+        assert_eq!(room(0, 0.05), Some(0.0));
+        assert_eq!(room(0, f32::NEG_INFINITY), Some(0.0));
+        // Outside of the circle it is an obstacle in that direction, too.
+        assert!(room(20, 0.4).unwrap() < 0.1);
+        // A robot that hides most of what is ahead of it.
+        let wide = |degrees| if (356..=360).contains(&degrees) || degrees < 3 { 0.15 } else { 5.0 };
+        let wide = all_round(0.1, wide);
+        assert_eq!(view(&wide, &Body::new(&wide), &here, &here), None);
+    }
+
+    #[test]
+    fn a_range_of_0_is_free_only_if_nothing_can_be_too_near_for_the_scanner() {
+        let corridor = |degrees: usize| if degrees.abs_diff(180) < 100 { 2.0 } else { 0.0 };
+        assert_eq!(view_from_here(&all_round(0.12, corridor)), Some(f64::INFINITY));
+        assert_eq!(view_from_here(&all_round(0.3, corridor)), None);
+        // This driver has another range for what is far.
+        let faulty = |degrees| if degrees == 90 { f32::INFINITY } else { corridor(degrees) };
+        assert_eq!(view_from_here(&all_round(0.12, faulty)), None);
+        let obstacle = |degrees| if degrees == 2 { 1.0 } else { corridor(degrees) };
+        assert!(view_from_here(&all_round(0.12, obstacle)).unwrap() < 0.7);
+    }
+
+    #[test]
+    fn there_is_a_view_if_most_of_what_is_ahead_is_no_invalid_reading() {
+        // The readings from 5 degrees to the right to 5 degrees to the left.
+        assert_eq!(view_from_here(&scan(90, 1.0, 0..5)), Some(f64::INFINITY));
+        assert_eq!(view_from_here(&scan(90, 1.0, 0..6)), None);
+        let here = Odometry::default();
         let turned = Odometry { heading: -FRAC_PI_2, ..here };
-        assert_eq!(room(&sees, &here, &here), f64::INFINITY);
-        let blind = Scan::new(
-            blind.geometry(),
-            blind
-                .ranges()
-                .iter()
-                .enumerate()
-                .map(|(at, range)| if at > 300 { f32::NAN } else { *range })
-                .collect(),
-            blind.robot_from_scanner(),
-        )
-        .unwrap();
-        assert_eq!(room(&blind, &here, &here), 0.0);
-        assert_eq!(room(&blind, &here, &turned), f64::INFINITY);
+        assert_eq!(room(&scan(90, 1.0, 0..6), &here, &turned), f64::INFINITY);
+        assert_eq!(view_from_here(&all_round(0.1, |_| f32::NAN)), None);
+    }
+
+    fn message(tenths: u64, frame: &str, ranges: Vec<f32>) -> Stamped<ScanReading> {
+        let geometry = scan(0, 1.0, 0..0).geometry();
+        let content = ScanReading { frame: frame.to_owned(), geometry, ranges };
+        Stamped { stamp: tenths * SECOND / 10, content }
+    }
+
+    /// Its first scan came at 1 s.
+    fn scanner() -> (Inbox<Stamped<ScanReading>>, Scanner) {
+        let (inbox, scans) = subscription("/scan");
+        let frame = Some("laser".to_owned());
+        let mut scanner = Scanner::new(ScanTopic { scans, frame, mount: Mount::centre() });
+        inbox.add(Some(message(10, "laser", vec![3.0; 360])));
+        scanner.update(PATIENCE, |_, _| Ok(())).unwrap();
+        (inbox, scanner)
+    }
+
+    const PATIENCE: Duration = Duration::from_millis(50);
+
+    fn room_ahead(scanner: &Scanner) -> f64 {
+        scanner.room(&Odometry::default(), &Odometry::default())
+    }
+
+    /// A scan that is taken before the end of a motion does not show the place where it ended, but what is ahead.
+    #[test]
+    fn the_newest_scan_counts_although_another_one_is_wanted() {
+        let (inbox, mut scanner) = scanner();
+        let mut wait = |inbox: &Inbox<_>, tenths, range| {
+            inbox.add(Some(message(tenths, "laser", vec![range; 360])));
+            let never = |_| None::<()>;
+            let waited = scanner.wait(PATIENCE, || false, |_, _| Ok(()), never);
+            assert!(waited.is_err());
+            room_ahead(&scanner)
+        };
+        assert!(wait(&inbox, 11, 1.0) < 0.6);
+        // This one is older.
+        assert!(wait(&inbox, 9, 5.0) < 0.6);
+    }
+
+    #[test]
+    fn an_error_of_a_scanner_names_what_is_wrong_with_its_messages() {
+        let topic = || "/scan".to_owned();
+        let error = |messages: &[Stamped<ScanReading>]| {
+            let (inbox, mut scanner) = scanner();
+            let clock = |topic: &str, stamp| match stamp {
+                900_000_000_000 => Err(RobotError::Closed { topic: topic.to_owned() }),
+                _ => Ok(()),
+            };
+            std::thread::sleep(2 * PATIENCE);
+            messages.iter().for_each(|message| {
+                inbox.add(Some(message.clone()));
+                let _ = scanner.update(PATIENCE, clock);
+            });
+            scanner.update(PATIENCE, clock).unwrap_err()
+        };
+        let ours = "those of its first scan, `laser`".to_owned();
+        let other = RobotError::OtherFrame { topic: topic(), theirs: "camera".to_owned(), ours };
+        assert_eq!(error(&[message(11, "camera", vec![1.0; 360])]), other);
+        let none = RobotError::NoScan { topic: topic(), cause: ScanError::NoReadings };
+        assert_eq!(error(&[message(11, "laser", vec![])]), none);
+        let same = [(); 5].map(|()| message(10, "laser", vec![1.0; 360]));
+        assert_eq!(error(&same), RobotError::SameStamp { topic: topic() });
+        let back = RobotError::ClockWentBack { topic: topic(), seconds: 0.5 };
+        assert_eq!(error(&[message(5, "laser", vec![1.0; 360])]), back);
+        let clock = message(9000, "laser", vec![1.0; 360]);
+        assert_eq!(error(&[clock]), RobotError::Closed { topic: topic() });
+        assert!(matches!(error(&[]), RobotError::Silent { .. }));
     }
 
     #[test]

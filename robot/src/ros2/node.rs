@@ -530,14 +530,96 @@ impl SerializerAdapter<Vec<u8>> for AsItIs {
 
 #[cfg(test)]
 mod tests {
+    use std::net::TcpListener;
+
     use super::*;
+
+    /// A domain that no other test uses, of this process or another one: it holds a port, which DDS does not use.
+    struct OwnDomain {
+        number: u16,
+        _port: TcpListener,
+    }
+
+    impl OwnDomain {
+        fn new() -> Self {
+            let free = (101..=200).find_map(|number| {
+                let port = TcpListener::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * number)).ok()?;
+                Some(Self { number, _port: port })
+            });
+            free.unwrap()
+        }
+
+        fn robot(&self, namespace: &str) -> RobotDomain {
+            let namespace = namespace.to_owned();
+            RobotDomain { number: self.number, namespace, ..RobotDomain::default() }
+        }
+    }
+
+    #[test]
+    fn tests_at_a_time_have_different_domains() {
+        let (one, other) = (OwnDomain::new(), OwnDomain::new());
+        assert_ne!(one.number, other.number);
+    }
+
+    const ODOMETRY: &str = "nav_msgs/msg/Odometry";
+
+    /// Publishes odometry until a subscription to it has had this message.
+    fn send(
+        writer: &Writer,
+        subscription: &Subscription<u8>,
+        message: u8,
+    ) -> Result<(), RobotError> {
+        let until = Instant::now() + Duration::from_secs(20);
+        loop {
+            writer.publish(vec![message; 4])?;
+            let is_it = |found| (found == message).then_some(());
+            match subscription.wait(LOOK, || false, is_it) {
+                Err(RobotError::Silent { .. }) if Instant::now() < until => {}
+                found => return found,
+            }
+        }
+    }
+
+    /// A driver that starts again has another writer.
+    #[test]
+    fn two_nodes_that_send_by_turns_are_an_error_and_one_that_starts_again_is_not() {
+        let own = OwnDomain::new();
+        let node = || DdsNode::new(&own.robot("")).unwrap();
+        let (driver, robot, again) = (node(), node(), node());
+        let read = |body: &EncodedBody| body.bytes.first().copied();
+        let subscription = driver.subscribe("/odom", ODOMETRY, read).unwrap();
+        let [first, second] =
+            [&robot, &again].map(|node| node.advertise("/odom", ODOMETRY).unwrap());
+        for (writer, message) in [(&first, 1), (&second, 2)] {
+            send(writer, &subscription, message).unwrap();
+        }
+        let two = RobotError::TwoSources { topic: "/odom".to_owned() };
+        assert_eq!(send(&first, &subscription, 3), Err(two.clone()));
+        assert_eq!(subscription.check_source(), Err(two));
+    }
+
+    #[test]
+    fn the_types_of_a_topic_are_those_of_all_its_writers() {
+        let own = OwnDomain::new();
+        let node = || DdsNode::new(&own.robot("")).unwrap();
+        let (watch, robot) = (node(), node());
+        assert!(watch.published_types("/hazard_detection").is_empty());
+        let _writers = ["std_msgs/msg/String", ODOMETRY]
+            .map(|kind| robot.advertise("/hazard_detection", kind).unwrap());
+        let until = Instant::now() + Duration::from_secs(20);
+        while watch.published_types("/hazard_detection").len() < 2 && Instant::now() < until {
+            sleep(LOOK);
+        }
+        let types: Vec<_> = watch.published_types("/hazard_detection").into_iter().collect();
+        assert_eq!(types, [ODOMETRY, "std_msgs/msg/String"]);
+    }
 
     /// A client as Fast DDS makes it: it says in the header of its request by which reader it reads replies, and takes those
     /// that name this reader and the number of its request.
     #[test]
     fn a_client_that_says_who_it_is_in_the_header_gets_its_reply() {
-        let number = (100 + process::id() % 100) as u16;
-        let domain = RobotDomain { number, namespace: "robot1".to_owned(), ..Default::default() };
+        let own = OwnDomain::new();
+        let domain = own.robot("robot1");
         let (server, client) = (DdsNode::new(&domain).unwrap(), DdsNode::new(&domain).unwrap());
         let mut calls = 0;
         let answer = move || {

@@ -207,14 +207,13 @@ impl SafetyTopic {
         if !is_known {
             let types: Vec<_> = types.into_iter().collect();
             let cause = (!types.is_empty()).then(|| format!("its type is {}", types.join(" and ")));
-            state
-                .change(|state| state.show_unread(self.name, cause.as_deref().unwrap_or_default()));
+            state.change(|state| state.show_unread(self.name, cause));
             return false;
         }
         let (wheels, state, read, name) = (wheels.clone(), state.clone(), self.read, self.name);
         let received = move |message: Option<EncodedBody>| {
             let reading = message.and_then(|body| read(&body));
-            let fault = if reading.is_none() { "its messages have another form" } else { "" };
+            let fault = reading.is_none().then(|| "its messages have another form".to_owned());
             state.change(|state| state.show_unread(name, fault));
             match reading {
                 Some(SafetyReading::Hazard(what)) => {

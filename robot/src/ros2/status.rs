@@ -46,7 +46,7 @@ pub(super) struct RunState {
     pub(super) unexplored: usize,
     /// The part of its charge that a battery has, in hundredths.
     pub(super) battery: Option<u8>,
-    /// The topics of bumpers, cliff sensors and batteries that are published and cannot be read, and their types.
+    /// The topics of bumpers, cliff sensors and batteries that are published and cannot be read, and why.
     unread: BTreeMap<&'static str, String>,
 }
 
@@ -81,13 +81,12 @@ impl RunState {
         (self.activity, self.has_failed) = (format!("stopped: {hazard}"), true);
     }
 
-    /// Shows that a topic of a sensor cannot be read; it can if there is no cause.
-    pub(super) fn show_unread(&mut self, topic: &'static str, cause: &str) {
-        if cause.is_empty() {
-            self.unread.remove(topic);
-        } else {
-            self.unread.insert(topic, cause.to_owned());
-        }
+    /// Shows why a topic of a sensor is not read; it is if there is no cause.
+    pub(super) fn show_unread(&mut self, topic: &'static str, cause: Option<String>) {
+        match cause {
+            Some(cause) => self.unread.insert(topic, cause),
+            None => self.unread.remove(topic),
+        };
     }
 
     fn is_battery_low(&self) -> bool {
@@ -211,11 +210,11 @@ mod tests {
     #[test]
     fn a_sensor_that_cannot_be_read_is_a_warning_until_it_can() {
         let mut state = RunState::new();
-        state.show_unread("/events/cliff", "its type is std_msgs/msg/String");
+        state.show_unread("/events/cliff", Some("its type is std_msgs/msg/String".to_owned()));
         assert_eq!(state.level(), Level::Warn);
         let message = "looking for the first junction; /events/cliff is not read: its type is std_msgs/msg/String";
         assert_eq!(state.message(), message);
-        state.show_unread("/events/cliff", "");
+        state.show_unread("/events/cliff", None);
         assert_eq!((state.level(), state), (Level::Ok, RunState::new()));
     }
 
