@@ -1,6 +1,9 @@
 //! The base of a live robot: wheels and odometry behind topics. Section 2.5.
 
-use std::time::{Duration, Instant};
+use std::{
+    thread::sleep,
+    time::{Duration, Instant},
+};
 
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
@@ -327,7 +330,8 @@ impl Drop for LiveBase {
             let stood = |now: Reckoning| standing.is_seen(now).then_some(());
             match self.odometry.wait(REPEAT_INTERVAL, || false, stood) {
                 Ok(()) | Err(RobotError::Closed { .. }) => break,
-                Err(_) => {}
+                Err(RobotError::Silent { .. }) => {}
+                Err(_) => sleep(REPEAT_INTERVAL),
             }
         }
     }

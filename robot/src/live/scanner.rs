@@ -398,10 +398,10 @@ mod tests {
                 _ => Ok(()),
             };
             std::thread::sleep(2 * PATIENCE);
-            messages.iter().for_each(|message| {
+            for message in messages {
                 inbox.add(Some(message.clone()));
                 let _ = scanner.update(PATIENCE, clock);
-            });
+            }
             scanner.update(PATIENCE, clock).unwrap_err()
         };
         let ours = "those of its first scan, `laser`".to_owned();

@@ -206,6 +206,18 @@ mod tests {
     }
 
     #[test]
+    fn a_message_that_can_be_read_ends_those_that_cannot() {
+        let (inbox, subscription) = subscription("/numbers");
+        assert_eq!(subscription.check_readable(), Ok(()));
+        inbox.add(None);
+        inbox.add(None);
+        let unreadable = RobotError::Unreadable { topic: "/numbers".to_owned(), unread: 2 };
+        assert_eq!(subscription.check_readable(), Err(unreadable));
+        inbox.add(Some(1));
+        assert_eq!(subscription.check_readable(), Ok(()));
+    }
+
+    #[test]
     fn the_last_message_counts_although_no_more_can_come() {
         let (inbox, subscription) = subscription("/numbers");
         inbox.add(Some(1));

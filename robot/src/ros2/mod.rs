@@ -72,7 +72,7 @@ const TRANSFORMS: Duration = Duration::from_secs(6);
 #[derive(Clone, Copy, Debug)]
 pub struct DriveSettings {
     pub sensor: LiveSensor,
-    /// The type of the commands to the wheels, unless it is the one that the robot reads.
+    /// The type of the commands to the wheels, if the robot reads two.
     pub wheels_type: Option<WheelsType>,
     /// Whether commands have the time of `/clock`, and not that of the system.
     pub sim_time: bool,
@@ -127,10 +127,7 @@ pub fn connect(
     for (topic, kind) in [&[(&topics.odometry, ODOMETRY)], &sensed[..]].concat() {
         published(topic, &[kind])?;
     }
-    let wheels_type = match wheels_type {
-        Some(given) => given,
-        None => wheels_type_of(&node, &topics.wheels, stop)?,
-    };
+    let wheels_type = wheels_type_of(&node, &topics.wheels, wheels_type, stop)?;
     let writer = node.advertise(&topics.wheels, wheels_type.type_name())?;
     let state = node.advertise_last(STATE, STATE_TYPE)?;
     let state = Arc::new(PublishedState::new(state, clock.clone()));
@@ -188,23 +185,31 @@ fn serve(
     })
 }
 
-/// The type of the commands that the robot reads.
+/// The type of the commands that the robot reads; if it reads both, the given one.
 fn wheels_type_of(
     node: &DdsNode,
     topic: &str,
+    given: Option<WheelsType>,
     stop: fn() -> bool,
 ) -> Result<WheelsType, RobotError> {
-    let known = WheelsType::ALL.map(WheelsType::type_name);
-    let found = node.type_of(topic, OtherSide::Reads, &known, FIRST, stop);
-    let found = found.map_err(|error| match error {
-        RobotError::OtherType { topic, theirs, .. } if theirs.contains(" and ") => {
-            let ours = "one of them; --cmd-vel-type says which".to_owned();
-            RobotError::OtherType { topic, theirs, ours }
+    let kinds = given.map_or(WheelsType::ALL.to_vec(), |given| vec![given]);
+    let known: Vec<_> = kinds.iter().map(|kind| kind.type_name()).collect();
+    match (node.type_of(topic, OtherSide::Reads, &known, FIRST, stop), given) {
+        (Ok(found), _) => {
+            let kind = kinds.into_iter().find(|kind| kind.type_name() == found);
+            Ok(kind.unwrap_or(WheelsType::Twist))
         }
-        error => error,
-    })?;
-    let kind = WheelsType::ALL.into_iter().find(|kind| kind.type_name() == found);
-    Ok(kind.unwrap_or(WheelsType::Twist))
+        (Err(RobotError::OtherType { theirs, .. }), Some(given))
+            if theirs.split(" and ").any(|kind| kind == given.type_name()) =>
+        {
+            Ok(given)
+        }
+        (Err(RobotError::OtherType { topic, theirs, .. }), None) if theirs.contains(" and ") => {
+            let ours = "one of them; select it with --cmd-vel-type".to_owned();
+            Err(RobotError::OtherType { topic, theirs, ours })
+        }
+        (Err(error), _) => Err(error),
+    }
 }
 
 /// The frame of the scanner of a topic, and where it is on the robot, by its transforms.
