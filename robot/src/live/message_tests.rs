@@ -24,7 +24,7 @@ use super::{
 };
 use crate::{
     robot::{Robot, RobotError},
-    superscout::WheelSpeeds,
+    superscout::{SPEED, TURN_RATE, WheelSpeeds},
 };
 
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -79,8 +79,12 @@ struct RecordedWheels {
 }
 
 impl RecordedWheels {
+    fn all(&self) -> Vec<WheelSpeeds> {
+        self.sent.lock().unwrap().clone()
+    }
+
     fn last(&self) -> Option<WheelSpeeds> {
-        self.sent.lock().unwrap().last().copied()
+        self.all().last().copied()
     }
 }
 
@@ -260,7 +264,7 @@ fn with_a_second_source_of_a_topic_the_wheels_are_stopped() {
         assert_eq!(error, RobotError::TwoSources { topic: topic.to_owned() });
         drop(robot);
         // The stop command is repeated for a second, some times.
-        let sent = driver.wheels.sent.lock().unwrap();
+        let sent = driver.wheels.all();
         assert!(sent.iter().all(|wheels| *wheels == WheelSpeeds::STOP), "it does not move");
         assert!((1..100).contains(&sent.len()), "{}", sent.len());
     }
@@ -313,22 +317,29 @@ fn scans_that_never_show_what_is_ahead_are_an_error_before_a_motion() {
     });
     let error = robot.unwrap().forward(0.5).unwrap_err();
     assert_eq!(error, RobotError::NothingAhead { topic: "/scan".to_owned() });
-    assert!(driver.wheels.sent.lock().unwrap().iter().all(|sent| *sent == WheelSpeeds::STOP));
+    assert!(driver.wheels.all().iter().all(|sent| *sent == WheelSpeeds::STOP));
+}
+
+/// The parts of its greatest speed that are commanded in a motion with a pause.
+fn commanded(motion: fn(&mut LiveRobot), part: fn(&WheelSpeeds) -> f64) -> Vec<f64> {
+    let (mut robot, driver) = Driver::after(Topics::send_all);
+    let wheels = driver.wheels.clone();
+    let pauses = thread::spawn(move || {
+        thread::sleep(Duration::from_millis(1100));
+        wheels.is_paused.store(true, Ordering::Relaxed);
+    });
+    motion(&mut robot);
+    pauses.join().unwrap();
+    driver.wheels.all().iter().map(part).collect()
 }
 
 #[test]
 fn a_run_that_goes_on_after_a_pause_speeds_up_again_from_a_standstill() {
-    let (mut robot, driver) = Driver::after(Topics::send_all);
-    let wheels = driver.wheels.clone();
-    let pauses = thread::spawn(move || {
-        thread::sleep(Duration::from_millis(900));
-        wheels.is_paused.store(true, Ordering::Relaxed);
-    });
-    robot.forward(0.5).unwrap();
-    pauses.join().unwrap();
-    let sent = driver.wheels.sent.lock().unwrap();
-    let speeds: Vec<f64> = sent.iter().map(|wheels| wheels.speed()).collect();
-    let paused = speeds.iter().skip(1).position(|speed| *speed == 0.0).unwrap() + 1;
-    assert!(speeds[paused - 1] > 0.16, "{speeds:?}");
-    assert!((0.0..0.1).contains(&speeds[paused + 1]), "{speeds:?}");
+    let ahead = commanded(|robot| robot.forward(0.5).unwrap(), |wheels| wheels.speed() / SPEED);
+    let turn = commanded(|robot| robot.turn(2.0).unwrap(), |wheels| wheels.turn_rate() / TURN_RATE);
+    for parts in [ahead, turn] {
+        let paused = parts.iter().position(|part| *part == 0.0).unwrap();
+        assert!(parts[paused - 1] > 0.9, "{parts:?}");
+        assert!((0.1..0.6).contains(&parts[paused + 1]), "{parts:?}");
+    }
 }
