@@ -19,7 +19,7 @@ first motion. `--fault` may be repeated:
     nan          odometry that is not a number
     jump         odometry is 5 m ahead
     frozen       the stamp of odometry stays the same
-    scan-clock   stamps of scans are 100 s early
+    scan-clock   stamps of scans are 100 s late
     back         stamps are 100 s early
     forward      stamps are 100 s late
     obstacle     something 0.8 m ahead
@@ -363,7 +363,7 @@ class Topics:
         chance, now = robot.chance, robot.time
         frame = "camera" if "wrong-frame" in faults else "laser"
         if "scan-clock" in faults:
-            stamp = Time(stamp.sec - 100, stamp.nanosec)
+            stamp = Time(stamp.sec + 100, stamp.nanosec)
         step = robot.step()
         last = -math.pi + (robot.options.rays - 1) * step
         sweep = LaserScan(Header(stamp, frame), -math.pi, last, step, 0.0, 0.1, 0.1, RANGE, robot.scan(), [])
