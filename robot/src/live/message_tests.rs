@@ -33,7 +33,7 @@ const INTERVAL: Duration = Duration::from_millis(10);
 const BEGIN: Nanoseconds = 100 * SECOND;
 
 /// What is sent at a time, which is that of the robot.
-type Send = fn(&Topics, Nanoseconds);
+type SendMessages = fn(&Topics, Nanoseconds);
 
 struct Topics {
     odometry: Inbox<Reckoning>,
@@ -108,13 +108,13 @@ impl Wheels for RecordedWheels {
 
 /// A thread that sends messages.
 struct Driver {
-    next: Sender<Send>,
+    next: Sender<SendMessages>,
     wheels: RecordedWheels,
 }
 
 impl Driver {
     /// A robot that sends this, and its driver.
-    fn new(send: Send) -> (Result<LiveRobot, RobotError>, Self) {
+    fn new(send: SendMessages) -> (Result<LiveRobot, RobotError>, Self) {
         let (odometry, odometry_read) = subscription("/odom");
         let (scans, scans_read) = subscription("/scan");
         let (markers, markers_read) = subscription("/marker");
@@ -137,7 +137,7 @@ impl Driver {
     }
 
     /// A robot whose driver begins well and then sends this.
-    fn after(send: Send) -> (LiveRobot, Self) {
+    fn after(send: SendMessages) -> (LiveRobot, Self) {
         let (robot, driver) = Self::new(Topics::send_all);
         driver.next.send(send).unwrap();
         thread::sleep(2 * INTERVAL);
@@ -145,7 +145,7 @@ impl Driver {
     }
 }
 
-fn send_until_dropped(topics: &Topics, mut send: Send, changes: &Receiver<Send>) {
+fn send_until_dropped(topics: &Topics, mut send: SendMessages, changes: &Receiver<SendMessages>) {
     let begun = Instant::now();
     loop {
         let since = u64::try_from(begun.elapsed().as_nanos()).unwrap();
@@ -159,7 +159,7 @@ fn send_until_dropped(topics: &Topics, mut send: Send, changes: &Receiver<Send>)
 }
 
 /// The error of a capture while this is sent, before which everything was right.
-fn capture_error(send: Send) -> RobotError {
+fn capture_error(send: SendMessages) -> RobotError {
     let (mut robot, _driver) = Driver::after(send);
     robot.capture().unwrap_err()
 }
@@ -168,7 +168,7 @@ fn capture_error(send: Send) -> RobotError {
 fn a_marker_is_seen_or_not_if_its_messages_are_of_the_robots_frame_and_clock() {
     let (mut robot, driver) = Driver::after(Topics::send_all);
     assert_eq!(robot.capture().unwrap().marker, None);
-    let seen: Send = |topics, now| {
+    let seen: SendMessages = |topics, now| {
         topics.send_marker(now, "/robot1/base_footprint");
         topics.send_all(now);
     };
@@ -179,7 +179,7 @@ fn a_marker_is_seen_or_not_if_its_messages_are_of_the_robots_frame_and_clock() {
         topics.send_marker(now, "camera_optical");
         topics.send_all(now);
     });
-    let other = "the messages on /marker are in the frame `camera_optical`; this program needs the robot's: base_link, base_footprint or base";
+    let other = "the messages on /marker are in the frame `camera_optical`; this program needs that of the robot: base_link, base_footprint or base";
     assert_eq!(error.to_string(), other);
     let error = capture_error(|topics, now| {
         topics.markers.add(None);
@@ -190,7 +190,7 @@ fn a_marker_is_seen_or_not_if_its_messages_are_of_the_robots_frame_and_clock() {
         (|topics, now| {
             topics.send_marker(now - 5 * SECOND, "base_link");
             topics.send_all(now);
-        }) as Send,
+        }) as SendMessages,
         |topics, now| {
             topics.send_marker(now + 5 * SECOND, "base_link");
             topics.send_all(now);
@@ -218,11 +218,11 @@ fn a_marker_that_was_seen_long_ago_is_not_seen_now() {
 #[test]
 fn scans_and_odometry_need_one_clock_at_the_beginning_and_later() {
     let differ = "the stamps on /scan and on /odom differ by 9.0 s";
-    let late: Send = |topics, now| {
+    let late: SendMessages = |topics, now| {
         topics.send_odometry(now, 0.0);
         topics.send_scan(now - 9 * SECOND, 3.0);
     };
-    let early: Send = |topics, now| {
+    let early: SendMessages = |topics, now| {
         topics.send_odometry(now, 0.0);
         topics.send_scan(now + 9 * SECOND, 3.0);
     };
@@ -246,7 +246,7 @@ fn a_driver_that_sets_no_stamps_is_named() {
 #[cfg(feature = "ros2")]
 #[test]
 fn with_a_second_source_of_a_topic_the_wheels_are_stopped() {
-    let sends: [Send; 2] = [
+    let sends: [SendMessages; 2] = [
         |topics, now| {
             topics.send_all(now);
             topics.odometry.record_two_sources();

@@ -222,7 +222,7 @@ fn marker_after(
 ) -> Result<Option<MarkerView>, RobotError> {
     let MarkerReading { frame, marker } = content;
     if !is_robot_frame(&frame) {
-        let ours = "the robot's: base_link, base_footprint or base".to_owned();
+        let ours = "that of the robot: base_link, base_footprint or base".to_owned();
         return Err(RobotError::OtherFrame { topic: topic.to_owned(), theirs: frame, ours });
     }
     base.check_clock(topic, stamp)?;

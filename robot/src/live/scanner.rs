@@ -126,7 +126,7 @@ impl ScanTopic {
     fn scan(&self, content: ScanReading) -> Result<Scan, RobotError> {
         let topic = || self.scans.topic().to_owned();
         if let Some(frame) = self.frame.as_ref().filter(|frame| **frame != content.frame) {
-            let ours = format!("those of its first scan, `{frame}`");
+            let ours = format!("that of the first scan, `{frame}`");
             return Err(RobotError::OtherFrame { topic: topic(), theirs: content.frame, ours });
         }
         let scan = content.scan(&self.mount);
@@ -404,7 +404,7 @@ mod tests {
             }
             scanner.update(PATIENCE, clock).unwrap_err()
         };
-        let ours = "those of its first scan, `laser`".to_owned();
+        let ours = "that of the first scan, `laser`".to_owned();
         let other = RobotError::OtherFrame { topic: topic(), theirs: "camera".to_owned(), ours };
         assert_eq!(error(&[message(11, "camera", vec![1.0; 360])]), other);
         let none = RobotError::NoScan { topic: topic(), cause: ScanError::NoReadings };
