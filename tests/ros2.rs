@@ -21,12 +21,10 @@ mod process;
 
 use std::{
     env, fs,
+    net::{Ipv4Addr, TcpListener},
     path::{Path, PathBuf},
     process::{Command, Stdio},
-    sync::{
-        Arc, LazyLock,
-        atomic::{AtomicU32, Ordering},
-    },
+    sync::{Arc, LazyLock},
     thread::sleep,
     time::{Duration, Instant},
 };
@@ -60,9 +58,11 @@ fn has_cyclone() -> bool {
 /// A folder and a domain for a test.
 struct Stage {
     folder: PathBuf,
-    domain: u32,
+    domain: u16,
     /// Where its programs run, if not in the network of the machine.
     network: Option<Arc<OwnNetwork>>,
+    /// A port of the domain, which DDS does not use. No other test has the domain meanwhile, of this run or another one.
+    _port: TcpListener,
 }
 
 impl Stage {
@@ -77,11 +77,13 @@ impl Stage {
     }
 
     fn within(network: Option<Arc<OwnNetwork>>, name: &str) -> Self {
-        static NUMBER: AtomicU32 = AtomicU32::new(0);
-        // Other than the usual one, than that of another test, and than most of another run of these tests.
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let domain = 20 + (std::process::id() + number) % 200;
-        Self { folder: output::folder(&format!("ros2-{name}")), domain, network }
+        let free = (20..=100).find_map(|domain| {
+            let port = TcpListener::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * domain)).ok()?;
+            Some((domain, port))
+        });
+        let (domain, port) = free.unwrap();
+        let folder = output::folder(&format!("ros2-{name}"));
+        Self { folder, domain, network, _port: port }
     }
 
     /// A program in the network of this test.
@@ -225,6 +227,8 @@ fn the_whole_of_shape_6_is_mapped_by_laser_over_dds() {
 fn a_robot_in_a_namespace_that_reads_stamped_commands_moves_and_stands_after_ctrl_c() {
     let stage = Stage::new("stamped");
     let space = ["--namespace", "robot1"];
+    let listen = ["listen", &stage.path("received"), "/robot1", "TwistStamped"];
+    let listener = stage.python("peer.py", &listen, "peer");
     let robot = stage.simulate(&[&space[..], &["--cmd-vel-type", "TwistStamped"]].concat());
     let drive = stage.drive(&[&space[..], &["--patience", "20"]].concat());
     until("the run begins", 60, || stage.folder.join("run.mcap").exists());
@@ -236,10 +240,21 @@ fn a_robot_in_a_namespace_that_reads_stamped_commands_moves_and_stands_after_ctr
     let output = drive.ends_within(30);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     assert!(stage.end().contains("stopped\0"), "{}", stage.end());
-    let topics = stage.out(&["info", &stage.path("run.mcap")]);
-    assert!(topics.contains("/toposlam/command"), "{topics}");
+    if listener.is_some() {
+        let commands = stage.lines("received", "/cmd_vel");
+        assert!(commands.iter().any(|line| line != STOP), "it moved: {commands:?}");
+        assert_eq!(commands.last().map(String::as_str), Some(STOP));
+        let odometry = || stage.lines("received", "/odom");
+        let stood = odometry();
+        sleep(Duration::from_secs(1));
+        let stands = odometry();
+        assert!(stands.len() > stood.len() && stands.last() == stood.last(), "it stands");
+    }
     drop(robot);
 }
+
+/// A stop, as `peer.py` writes it.
+const STOP: &str = "/cmd_vel 0.0 0.0";
 
 #[test]
 fn a_silent_robot_is_given_up() {
@@ -284,11 +299,16 @@ fn what_is_missing_or_of_another_type_is_said() {
             "no-frame",
             "the scanner's frame `laser` is not connected to the robot: no transform",
         ),
+        (
+            "publish",
+            "other-marker",
+            "/marker of the robot is geometry_msgs/msg/Twist; this program needs geometry_msgs/msg/PoseStamped",
+        ),
         ("publish", "plain", "nobody reads /cmd_vel"),
         (
             "read",
             "both",
-            "/cmd_vel of the robot is geometry_msgs/msg/Twist and geometry_msgs/msg/TwistStamped; this program needs one of them; --cmd-vel-type says which",
+            "/cmd_vel of the robot is geometry_msgs/msg/Twist and geometry_msgs/msg/TwistStamped; this program needs one of them; select it with --cmd-vel-type",
         ),
     ] {
         let Some(peer) = stage.peer(verb, what) else { return };
@@ -296,6 +316,10 @@ fn what_is_missing_or_of_another_type_is_said() {
         assert!(said.contains(expected), "{what}: {said}");
         drop(peer);
     }
+    let Some(_peer) = stage.peer("read", "Twist") else { return };
+    let said = refused(&stage, &["--cmd-vel-type", "TwistStamped"]);
+    let expected = "/cmd_vel of the robot is geometry_msgs/msg/Twist; this program needs geometry_msgs/msg/TwistStamped";
+    assert!(said.contains(expected), "{said}");
 }
 
 /// The odometry of one would be taken for that of the other.
@@ -314,6 +338,21 @@ fn of_two_robots_on_the_same_topics_none_is_driven() {
     assert!(stderr(&output).contains(expected), "{}", stderr(&output));
 }
 
+#[test]
+fn a_second_robot_that_comes_later_ends_the_run() {
+    let stage = Stage::new("later");
+    let Some(_commands) = stage.peer("listen", &stage.path("received")) else { return };
+    let robot = stage.simulate(&[]);
+    let drive = stage.drive(&["--patience", "20"]);
+    until("the run begins", 60, || stage.folder.join("run.mcap").exists());
+    let second = stage.python("peer.py", &["publish", "plain"], "second");
+    let output = drive.ends_within(60);
+    drop((robot, second));
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stage.end().contains("two nodes publish on /"), "{}", stage.end());
+    assert_eq!(stage.lines("received", "/cmd_vel").pop().as_deref(), Some(STOP));
+}
+
 /// The robot is one of Cyclone DDS that does not move.
 #[test]
 fn the_type_of_commands_is_the_one_that_the_robot_reads_and_no_other_is_sent() {
@@ -326,6 +365,30 @@ fn the_type_of_commands_is_the_one_that_the_robot_reads_and_no_other_is_sent() {
         let read = stage.lines("peer", "Twist");
         assert!(!read.is_empty() && read.iter().all(|kind| kind == twist), "{read:?}");
     }
+}
+
+#[test]
+fn tests_at_a_time_have_different_domains() {
+    let (one, other) = (Stage::new("one-domain"), Stage::new("other-domain"));
+    assert_ne!(one.domain, other.domain);
+}
+
+/// It is refused before a robot is looked for.
+#[test]
+fn bends_are_no_vertices_of_a_robot_in_corridors() {
+    let stage = Stage::new("corners");
+    let params = stage.path("params.toml");
+    let refused = |text: &str| {
+        fs::write(&params, text).unwrap();
+        let drive = ["drive", "--ros2", "--sensor", "laser", "--corridors"];
+        let mut command = stage.toposlam(&[&drive[..], &["--laser-params", &params]].concat());
+        let output = command.env("ROS_DOMAIN_ID", "233").output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        stderr(&output)
+    };
+    let expected = "--laser-params: corner.corners is true, but a robot in corridors takes no bend for a vertex; set it to false";
+    assert!(refused("[corner]\ncorners = true\n").contains(expected));
+    assert!(refused("[corner]\ncorners = false\n").contains("ROS_DOMAIN_ID"));
 }
 
 #[test]
@@ -361,20 +424,20 @@ fn others_see_a_run_pause_it_and_abort_it() {
             stage.lines("seen", word).iter().any(|line| line.contains(part))
         };
         until("the robot leaves", 60, || is_seen("/state 0", "by door 0 [moves=1 vertices=1"));
-        assert_eq!(call(&stage, "pause"), "True the wheels stand\n");
+        assert_eq!(call(&stage, "pause"), "True the stop command is sent\n");
         // The wheels brake.
         sleep(Duration::from_millis(500));
         let odometry = || stage.lines("received", "/odom").last().cloned();
         let stood = odometry();
         sleep(Duration::from_secs(1));
         assert_eq!((odometry(), stood.is_some()), (stood, true));
-        assert_eq!(call(&stage, "pause"), "False the wheels stand already\n");
+        assert_eq!(call(&stage, "pause"), "False the run is paused already\n");
         assert!(is_seen("/state 1", "paused; driving to the next junction by door 0"));
         assert_eq!(call(&stage, "resume"), "True the run goes on\n");
         assert_eq!(call(&stage, "resume"), "False the run is not paused\n");
         until("the next junction is known", 60, || is_seen("/markers", "numbers:9:0:0:1"));
         // A run that waits ends, too.
-        assert_eq!(call(&stage, "pause"), "True the wheels stand\n");
+        assert_eq!(call(&stage, "pause"), "True the stop command is sent\n");
         assert_eq!(call(&stage, "abort"), "True the run ends\n");
         let output = drive.ends_within(30);
         assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
@@ -401,12 +464,13 @@ fn a_bumper_ends_a_run_and_a_low_battery_is_a_warning() {
     let publish = |what| Process::start(&mut stage.script("services.py", &["publish", what]));
     let watch = &mut stage.script("services.py", &["watch", &stage.path("seen")]);
     let _watch = Process::start(watch);
-    let _battery = publish("battery");
+    let _sensors = ["battery", "other-cliff"].map(publish);
     let robot = stage.simulate(&[]);
     let drive = stage.drive(&["--patience", "20"]);
     let is_seen =
         |word: &str, part: &str| stage.lines("seen", word).iter().any(|line| line.contains(part));
-    until("the robot leaves", 60, || is_seen("/state 1", "by door 0; the battery is low"));
+    let warnings = "by door 0; the battery is low; /events/cliff is not read: its type is rosgraph_msgs/msg/Clock";
+    until("the robot leaves", 60, || is_seen("/state 1", warnings));
     assert!(is_seen("/state 1", "battery=8 %"));
     // Without --ros-distro the node is in no list.
     assert_eq!(stage.lines("seen", "/nodes").len(), 0);
@@ -417,7 +481,7 @@ fn a_bumper_ends_a_run_and_a_low_battery_is_a_warning() {
     assert!(stage.end().contains(cause), "{}", stage.end());
     until("the end is seen", 5, || is_seen("/state 2", cause));
     let last = stage.lines("received", "/cmd_vel").pop();
-    assert_eq!(last.as_deref(), Some("/cmd_vel 0.0 0.0"));
+    assert_eq!(last.as_deref(), Some(STOP));
     drop(robot);
 }
 
@@ -449,8 +513,9 @@ fn the_options_of_each_robot_in_the_package_are_options_of_this_program() {
         return;
     }
     let commands = stdout(&printed);
-    assert_eq!(commands.lines().count(), 3, "{commands}{}", stderr(&printed));
-    for line in commands.lines() {
+    assert_eq!(commands.lines().count(), 6, "{commands}{}", stderr(&printed));
+    for (number, line) in commands.lines().enumerate() {
+        assert_eq!(line.contains("\"--corridors\""), number % 2 == 0, "{line}");
         let words: Vec<String> = serde_json::from_str(line).unwrap();
         let words: Vec<_> = words[1..].iter().map(String::as_str).collect();
         let output = stage.toposlam(&words).env("ROS_DOMAIN_ID", "233").output().unwrap();

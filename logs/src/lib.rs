@@ -50,5 +50,5 @@ pub use merge::{RawMessage, RawMessages};
 pub use no_return::NoReturnSign;
 pub use reading_remark::ReadingRemark;
 pub use skipped_lines::SkippedLines;
-pub use transforms::{FrameTree, Mount};
+pub use transforms::{FrameTree, Mount, is_robot_frame};
 pub use world_hash::world_hash;

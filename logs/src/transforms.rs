@@ -98,6 +98,11 @@ fn is_base(frame: &str) -> bool {
     BASES.iter().any(|base| is_called(frame, base))
 }
 
+/// Whether a frame is one of the usual ones of a robot: `base_link`, `base_footprint` or `base`.
+pub fn is_robot_frame(frame: &str) -> bool {
+    is_base(&frame_name(frame))
+}
+
 /// Whether a robot moves in a frame.
 fn is_floor(frame: &str) -> bool {
     FLOORS.iter().any(|floor| is_called(frame, floor))

@@ -3,6 +3,7 @@
 use thiserror::Error;
 use toposlam_logs::record::Frame;
 use toposlam_model::driving::{odometry::Odometry, pose::Pose};
+use toposlam_vision::laser::scan::ScanError;
 
 /// A robot with a camera or a laser scanner. An action may fail, be late, or be inexact; odometry reports its result.
 /// An error means that the robot cannot go on.
@@ -66,18 +67,38 @@ pub enum RobotError {
     OtherType { topic: String, theirs: String, ours: String },
     #[error("the scanner's frame `{frame}` is not connected to the robot: {cause}")]
     NoMount { frame: String, cause: String },
-    /// The frame of scans changed after the beginning of the run.
-    #[error(
-        "the scans on {topic} are of the frame `{theirs}`; those of the scanner are of `{ours}`"
-    )]
+    /// Scans are in another frame than the first one, or the marker is not in the robot's.
+    #[error("the messages on {topic} are in the frame `{theirs}`; this program needs {ours}")]
     OtherFrame { topic: String, theirs: String, ours: String },
+    #[error("the messages on {topic} are no scans: {cause}")]
+    NoScan { topic: String, cause: ScanError },
+    #[error(
+        "the scans on {topic} show nothing ahead of the robot: their ranges there are 0, not numbers, or of the robot itself"
+    )]
+    NothingAhead { topic: String },
     #[error("the stamps on {topic} went back by {seconds:.1} s")]
     ClockWentBack { topic: String, seconds: f64 },
+    /// A driver that does not set stamps.
+    #[error("all messages on {topic} have the same stamp")]
+    SameStamp { topic: String },
+    /// The clocks of the two drivers differ, or the messages of one come late.
+    #[error("the stamps on {topic} and on {odometry} differ by {seconds:.1} s")]
+    ClocksDiffer { topic: String, odometry: String, seconds: f64 },
+    /// A driver that starts again begins at 0.
+    #[error(
+        "the odometry on {topic} jumped: it went {metres:.2} m and turned {degrees:.0} degrees in {seconds:.2} s"
+    )]
+    OdometryJumped { topic: String, metres: f64, degrees: f64, seconds: f64 },
     #[error("the robot does not move: odometry shows nothing of its last {motions} motions")]
     DoesNotMove { motions: u32 },
-    /// `unread` counts the messages that cannot be read.
+    /// `unread` counts the last messages, which cannot be read.
     #[error("no message on {topic} for {seconds} s{}", unreadable(*.unread))]
     Silent { topic: String, seconds: f64, unread: u64 },
+    /// Messages of both would be mixed.
+    #[error("two nodes publish on {topic}: stop one of them, or name another topic with --topic")]
+    TwoSources { topic: String },
+    #[error("the last messages on {topic} ({unread}) {}", UNREADABLE)]
+    Unreadable { topic: String, unread: u64 },
     #[error("the connection to {topic} is closed")]
     Closed { topic: String },
     #[error("the robot reports on {topic} that {what}")]
@@ -92,11 +113,9 @@ pub enum RobotError {
     Stopped,
 }
 
-fn unreadable(messages: u64) -> String {
-    match messages {
-        0 => String::new(),
-        messages => {
-            format!("; {messages} messages on it have another type, or numbers that are not finite")
-        }
-    }
+fn unreadable(count: u64) -> String {
+    if count == 0 { String::new() } else { format!("; the last on it ({count}) {UNREADABLE}") }
 }
+
+/// What messages that cannot be read have.
+const UNREADABLE: &str = "have another type, or numbers that are not finite";

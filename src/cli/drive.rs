@@ -22,8 +22,8 @@ use super::{
 /// it. The program reads the camera and the odometry and commands the wheels through the topics of ROS 1 or
 /// ROS 2. It maps as in a simulated run.
 ///
-/// With --sensor laser it reads a laser scanner. In ROS 2, /tf_static says where on the robot it is; in ROS 1, it is
-/// in the robot's centre and looks ahead. A scanner does not see the marker: another detector must publish the
+/// With --sensor laser it reads a laser scanner. In ROS 2, its place on the robot is read from /tf_static; in ROS 1,
+/// it is in the robot's centre and looks ahead. A scanner does not see the marker: another detector must publish the
 /// marker's pose in the robot's frame, x along the marker.
 ///
 /// With --corridors a junction is where at least three ways meet that lead on for 10 m or more; dead ends are vertices, and

@@ -93,7 +93,7 @@ impl RosOptions {
         }
     }
 
-    /// The option that says where the topics are.
+    /// The option for the place of the topics.
     #[cfg(any(feature = "ros1", feature = "ros2"))]
     fn option(&self) -> &'static str {
         if self.ros.is_some() { "--ros" } else { "--ros2" }

@@ -48,12 +48,18 @@ impl Stage {
         numbers.map(|n| RobotCommand { speed: n[1], turning: n[2], gap: n[3] }).collect()
     }
 
-    /// Checks what holds whatever happens: no motion is commanded later than this after the last good message, no speed
-    /// is reached in one step, and the last command is to stop.
-    fn check_commands(&self, output: &str, patience: f64) -> Vec<RobotCommand> {
-        let commands = self.commands(output);
+    /// Checks what holds whatever happens, and that the last command is to stop.
+    fn check_commands(&self, output: &str, patience: f64) {
+        let commands = self.check_motions(output, patience);
         let name = self.folder.display();
         assert!(commands.last().is_some_and(|last| !last.moves()), "{name}: it does not stand");
+    }
+
+    /// Checks what holds whatever happens: no motion is commanded later than this after the last good message, and no speed
+    /// is reached in one step.
+    fn check_motions(&self, output: &str, patience: f64) -> Vec<RobotCommand> {
+        let commands = self.commands(output);
+        let name = self.folder.display();
         for command in commands.iter().filter(|command| command.moves()) {
             assert!(command.gap <= patience, "{name}: a motion after {} s", command.gap);
         }
@@ -103,6 +109,8 @@ fn a_robot_of_another_program_maps_its_building_although_messages_fail() {
     assert!(second.ends_within(20).status.success());
     assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
     assert_eq!(stage.network.as_ref().map_or(0, |network| network.sent()), 0, "packets leave");
+    // The first one has the faults, and is switched off in a motion or between two.
+    stage.check_motions("first", 5.5);
     stage.check_commands("second", 5.5);
     assert!(stage.went("second")[1] > 0.5, "it stays away from walls");
     let map = stage.path("map.toml");
@@ -138,14 +146,30 @@ fn after_a_fault_the_robot_stands_and_the_log_says_why_and_a_short_one_does_not_
     let runs = [
         ends("silent", "silent@2+10", "no message on /odom for 2 s"),
         ends("no-scans", "no-scans@2+99", "no message on /scan for 2 s"),
-        ends("wrong-frame", "wrong-frame@2+99", "the scans on /scan are of the frame `camera`"),
+        ends("wrong-frame", "wrong-frame@2+99", "the messages on /scan are in the frame `camera`"),
         ends("nan", "nan@2+99", "have another type, or numbers that are not finite"),
         ends("back", "back@2+99", "went back by"),
         ends("stuck", "stuck@0+99", "the robot does not move"),
         goes_on("short", "silent@2+1"),
         goes_on("forward", "forward@2+9999"),
     ];
-    let stage = Stage::new("faults");
+    check_faults("faults", &runs);
+}
+
+#[test]
+fn after_messages_that_cannot_be_right_the_robot_stands_and_the_log_says_why() {
+    let ends = |name, fault, end| FaultyRun { name, fault, end: Some(end) };
+    let runs = [
+        ends("jump", "jump@2+99", "the odometry on /odom jumped: it went 5.0"),
+        ends("frozen", "frozen@2+99", "all messages on /odom have the same stamp"),
+        ends("scan-clock", "scan-clock@2+99", "the stamps on /scan and on /odom differ by "),
+    ];
+    check_faults("wrong-messages", &runs);
+}
+
+/// Drives robots with these faults at the same time.
+fn check_faults(name: &str, runs: &[FaultyRun]) {
+    let stage = Stage::new(name);
     let robots = runs.iter().map(|run| {
         let stage = stage.beside(run.name);
         let robot = stage.robot(&["--fault", run.fault], "robot")?;

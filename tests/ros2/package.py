@@ -1,4 +1,5 @@
-"""Prints the command that the launch file makes of each configuration, as JSON lines, and checks that the manifests parse.
+"""Prints the commands that the launch file makes of each configuration, as JSON lines: as it is, and with corridors:=false.
+It checks that the manifests parse.
 
 The modules of ROS 2 that it imports are stand-ins.
 """
@@ -51,5 +52,7 @@ spec.loader.exec_module(launch)
 *declared, start = launch.generate_launch_description().words[0]
 defaults = {one.words[0]: one.named["default_value"] for one in declared}
 for config in sorted((folder / "toposlam_ros/config").glob("*.yaml")):
-    (process,) = start.named["function"]({**defaults, "config": config.stem, "namespace": "robot1"})
-    print(json.dumps(process.named["cmd"]))
+    for corridors in ("", "false"):
+        given = {"config": config.stem, "namespace": "robot1", "corridors": corridors}
+        (process,) = start.named["function"]({**defaults, **given})
+        print(json.dumps(process.named["cmd"]))

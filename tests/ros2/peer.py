@@ -1,8 +1,9 @@
 """A participant by Cyclone DDS: another implementation of DDS than the one of toposlam.
 
-peer.py listen FILE          write each message of /odom, /scan and /cmd_vel as a line
-peer.py publish KIND         publish /odom and a /scan of a kind: twist-type, xcdr2, no-frame, plain
-peer.py read TWIST           read /cmd_vel as Twist, TwistStamped or both, and publish /odom and /scan
+peer.py listen FILE [NAMESPACE TWIST]   write each message of /odom, /scan and /cmd_vel (Twist or TwistStamped) as a line
+peer.py publish KIND                    publish /odom, a /scan of a kind: twist-type, xcdr2, no-frame, plain, and announce
+                                        /marker; other-marker: of another type
+peer.py read TWIST                      read /cmd_vel as Twist, TwistStamped or both, and publish the same
 """
 
 import sys
@@ -15,6 +16,7 @@ from messages import (
     LaserScan,
     Odometry,
     Pose,
+    PoseStamped,
     PoseWithCovariance,
     Quaternion,
     Time,
@@ -42,9 +44,10 @@ def scan(frame):
     return LaserScan(header(frame), -3.14, 3.13, 0.0174, 0.0, 0.1, 0.1, 12.0, [1.0] * 360, [])
 
 
-def listen(path):
-    kinds = {"/odom": Odometry, "/scan": LaserScan, "/cmd_vel": Twist}
-    readers = {name: reader(name, kind) for name, kind in kinds.items()}
+def listen(path, space="", twist="Twist"):
+    commands = {"Twist": Twist, "TwistStamped": TwistStamped}[twist]
+    kinds = {"/odom": Odometry, "/scan": LaserScan, "/cmd_vel": commands}
+    readers = {name: reader(space + name, kind) for name, kind in kinds.items()}
     with open(path, "w", buffering=1) as out:
         while True:
             for name, one in readers.items():
@@ -56,7 +59,8 @@ def listen(path):
                     elif name == "/scan":
                         out.write(f"/scan {len(found.ranges)} {found.header.frame_id}\n")
                     else:
-                        out.write(f"/cmd_vel {found.linear.x} {found.angular.z}\n")
+                        speeds = found.twist if isinstance(found, TwistStamped) else found
+                        out.write(f"/cmd_vel {speeds.linear.x} {speeds.angular.z}\n")
             time.sleep(0.005)
 
 
@@ -66,6 +70,8 @@ def publish(kind, commands=()):
         scans = writer("/scan", Twist)
     else:
         scans = writer("/scan", LaserScan, XCDR2 if kind == "xcdr2" else XCDR1)
+    # Nothing is seen of the marker.
+    _markers = writer("/marker", Twist if kind == "other-marker" else PoseStamped)
     zero = Vector3(0.0, 0.0, 0.0)
     readers = [reader("/cmd_vel", one) for one in commands]
     while True:
@@ -79,9 +85,9 @@ def publish(kind, commands=()):
         time.sleep(0.02)
 
 
-def main(verb, what):
+def main(verb, what, *more):
     if verb == "listen":
-        listen(what)
+        listen(what, *more)
     elif verb == "publish":
         publish(what)
     else:

@@ -17,6 +17,9 @@ first motion. `--fault` may be repeated:
     no-scans     no scans
     wrong-frame  scans of another frame
     nan          odometry that is not a number
+    jump         odometry is 5 m ahead
+    frozen       the stamp of odometry stays the same
+    scan-clock   stamps of scans are 100 s late
     back         stamps are 100 s early
     forward      stamps are 100 s late
     obstacle     something 0.8 m ahead
@@ -306,6 +309,7 @@ class Topics:
         x, y, yaw = SCANNER
         links = [("base_link", "plate", x, 0.0, 0.0), ("plate", "laser", 0.0, y, yaw)]
         self.fixed.write(TFMessage([transform(stamp, *link) for link in links]))
+        self.measured = stamp
         self.good = {"odometry": time.monotonic(), "scan": time.monotonic()}
 
     def stamp(self, faults: set[str]) -> Time:
@@ -334,14 +338,18 @@ class Topics:
         speed, turning = robot.speeds
         if "nan" in faults:
             pose.position.x = math.nan
+        if "jump" in faults:
+            pose.position.x += 5.0
+        if "frozen" not in faults:
+            self.measured = stamp
         twist = Twist(Vector3(speed, 0.0, 0.0), Vector3(0.0, 0.0, turning))
         message = Odometry(
-            Header(stamp, "odom"),
+            Header(self.measured, "odom"),
             "base_link",
             PoseWithCovariance(pose, [0.0] * 36),
             TwistWithCovariance(twist, [0.0] * 36),
         )
-        if self.odometry.put(now, message, faults, chance) and not faults & {"nan", "back"}:
+        if self.odometry.put(now, message, faults, chance) and not faults & {"nan", "back", "jump", "frozen"}:
             self.good["odometry"] = time.monotonic()
         if tick % 10 == 0:
             self.frames.write(TFMessage([transform(stamp, "odom", "base_link", x, y, heading)]))
@@ -354,6 +362,8 @@ class Topics:
         robot = self.robot
         chance, now = robot.chance, robot.time
         frame = "camera" if "wrong-frame" in faults else "laser"
+        if "scan-clock" in faults:
+            stamp = Time(stamp.sec + 100, stamp.nanosec)
         step = robot.step()
         last = -math.pi + (robot.options.rays - 1) * step
         sweep = LaserScan(Header(stamp, frame), -math.pi, last, step, 0.0, 0.1, 0.1, RANGE, robot.scan(), [])
@@ -362,7 +372,7 @@ class Topics:
             x, y, yaw = marker
             seen = PoseStamped(Header(stamp, "base_link"), Pose(Vector3(x, y, 0.0), quaternion(yaw)))
             self.markers.put(now, seen, faults, chance)
-        if self.scans.put(now, sweep, faults, chance) and not faults & {"wrong-frame", "back"}:
+        if self.scans.put(now, sweep, faults, chance) and not faults & {"wrong-frame", "back", "scan-clock"}:
             self.good["scan"] = time.monotonic()
 
 

@@ -3,8 +3,8 @@
 services.py watch FILE       write each message of /toposlam/state, /toposlam/map, /toposlam/markers, and each list of nodes
 services.py call NAME        call a service of the type Trigger, and print its response
 services.py stamps FILE      write the stamp of each TwistStamped of /cmd_vel as a line
-services.py publish WHAT     publish /hazard_detection with a bump, /battery_state that is low, a /clock,
-                             or grey pixels on /camera/pixels
+services.py publish WHAT     publish /hazard_detection with a bump, /battery_state that is low, /events/cliff of another
+                             type, a /clock, or grey pixels on /camera/pixels
 """
 
 import os
@@ -284,6 +284,7 @@ def publish(what):
     topics = {
         "bump": ("/hazard_detection", bump),
         "battery": ("/battery_state", battery),
+        "other-cliff": ("/events/cliff", Clock(Time(77, 5))),
         "clock": ("/clock", Clock(Time(77, 5))),
         "pixels": ("/camera/pixels", Image(header(), 120, 160, "mono8", 0, 164, [128] * (164 * 120))),
     }

@@ -1,6 +1,9 @@
 //! The base of a live robot: wheels and odometry behind topics. Section 2.5.
 
-use std::time::{Duration, Instant};
+use std::{
+    thread::sleep,
+    time::{Duration, Instant},
+};
 
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
@@ -8,12 +11,13 @@ use super::{
     Wheels,
     messages::{Nanoseconds, Reckoning, SECOND},
     response::ResponseMeter,
-    scanner::{Scanner, went_back},
+    scanner::Scanner,
+    stamps::StampFaults,
     topic::Subscription,
 };
 use crate::{
     robot::{RobotError, Sample, TimedOdometry},
-    superscout::{Base, BaseResponse, PERIOD, WheelSpeeds},
+    superscout::{Base, BaseResponse, PERIOD, SPEED, TURN_RATE, WheelSpeeds},
 };
 
 /// The robot does not move if this many motions in a row are not carried out.
@@ -30,6 +34,11 @@ const STANDS_ANGLE: f64 = 0.004;
 /// in all of this time: two readings in a row may be a few milliseconds apart.
 const STANDS_TIME: Nanoseconds = SECOND / 10;
 
+/// Odometry jumps if it goes farther than twice as fast as the robot, and this, in metres,
+const JUMP: f64 = 0.1;
+/// or turns so, and this, in radians.
+const JUMP_ANGLE: f64 = 0.2;
+
 /// Finds out from readings whether a robot stands.
 #[derive(Default)]
 pub(super) struct Standing {
@@ -38,7 +47,7 @@ pub(super) struct Standing {
 }
 
 impl Standing {
-    /// Whether a robot stands at a reading. One that goes back in time says nothing.
+    /// Whether a robot stands at a reading. One that is not later than the last one is ignored.
     pub(super) fn is_seen(&mut self, now: Reckoning) -> bool {
         let is_here = |since: &Reckoning| {
             now.at.distance(&since.at) <= STANDS
@@ -73,6 +82,8 @@ pub(super) struct LiveBase {
     last: Reckoning,
     /// When the last odometry came.
     arrived: Instant,
+    /// What is wrong with the stamps of later messages.
+    stamps: StampFaults,
     /// `None` for a robot without a laser scanner.
     pub(super) scanner: Option<Scanner>,
     response: ResponseMeter,
@@ -80,7 +91,7 @@ pub(super) struct LiveBase {
 }
 
 impl LiveBase {
-    /// A base at rest, as soon as odometry has come.
+    /// A base at rest, as soon as odometry of two times has come.
     pub(super) fn new(
         wheels: Box<dyn Wheels>,
         odometry: Subscription<Reckoning>,
@@ -88,7 +99,11 @@ impl LiveBase {
         patience: Duration,
         stop: fn() -> bool,
     ) -> Result<Self, RobotError> {
-        let last = odometry.wait(patience, stop, Some)?;
+        let first = odometry.wait(patience, stop, Some)?;
+        let mut stamps = StampFaults::default();
+        let is_later = |now: Reckoning| stamps.is_later(first.stamp, now.stamp).then_some(now);
+        let last =
+            odometry.wait(patience, stop, is_later).map_err(|error| stamps.explain(error))?;
         let mut base = Self {
             wheels,
             odometry,
@@ -97,6 +112,7 @@ impl LiveBase {
             epoch: last.stamp,
             last,
             arrived: Instant::now(),
+            stamps,
             scanner,
             response: ResponseMeter::default(),
             track: Vec::new(),
@@ -119,10 +135,11 @@ impl LiveBase {
     }
 
     /// The present odometry, if it comes.
-    pub(super) fn read(&mut self) {
-        if self.take_odometry().is_some() {
+    pub(super) fn read(&mut self) -> Result<(), RobotError> {
+        if self.take_odometry()?.is_some() {
             self.sample(WheelSpeeds::STOP);
         }
+        Ok(())
     }
 
     /// The stamp of the last odometry, also of one that was not used yet.
@@ -131,22 +148,55 @@ impl LiveBase {
     }
 
     /// # Errors
-    /// Returns an error if odometry has not come for too long.
+    /// Returns an error if the stamp of a message that came now is farther from those of odometry than the longest time
+    /// without a message.
+    pub(super) fn check_clock(&self, topic: &str, stamp: Nanoseconds) -> Result<(), RobotError> {
+        let seconds = self.seconds(stamp) - self.seconds(self.stamp());
+        if seconds.abs() <= self.patience.as_secs_f64() {
+            return Ok(());
+        }
+        let [topic, odometry] = [topic, self.odometry.topic()].map(str::to_owned);
+        Err(RobotError::ClocksDiffer { topic, odometry, seconds: seconds.abs() })
+    }
+
+    /// # Errors
+    /// Returns an error if odometry has not come for too long, or has jumped.
     pub(super) fn check_odometry(&mut self) -> Result<(), RobotError> {
-        self.take_odometry();
+        self.take_odometry()?;
         if self.arrived.elapsed() > self.patience {
-            return Err(self.odometry.silent(self.patience));
+            return Err(self.stamps.explain(self.odometry.silent(self.patience)));
         }
         Ok(())
     }
 
     /// Takes the last odometry, if it is newer.
-    fn take_odometry(&mut self) -> Option<Reckoning> {
-        let (now, arrived) = self.odometry.take_timed()?;
-        (now.stamp > self.last.stamp).then(|| {
-            (self.last, self.arrived) = (now, arrived);
-            now
-        })
+    fn take_odometry(&mut self) -> Result<Option<Reckoning>, RobotError> {
+        self.odometry.check_source()?;
+        let Some((now, arrived)) = self.odometry.take_timed() else { return Ok(None) };
+        if !self.stamps.is_later(self.last.stamp, now.stamp) {
+            return Ok(None);
+        }
+        check_way(self.odometry.topic(), &self.last, &now)?;
+        (self.last, self.arrived) = (now, arrived);
+        Ok(Some(now))
+    }
+
+    /// Waits while the run is paused, then until the robot stands; checks that odometry and scans come. Whether the run was
+    /// paused.
+    fn get_ready(&mut self) -> Result<bool, RobotError> {
+        let was_paused = self.wheels.wait()?;
+        if was_paused {
+            self.response.discard();
+            self.command(WheelSpeeds::STOP)?;
+        }
+        self.check_odometry()?;
+        if let Some(mut scanner) = self.scanner.take() {
+            let checked =
+                scanner.update(self.patience, |topic, stamp| self.check_clock(topic, stamp));
+            self.scanner = Some(scanner);
+            checked?;
+        }
+        Ok(was_paused)
     }
 
     fn sample(&mut self, wheels: WheelSpeeds) {
@@ -176,66 +226,83 @@ impl LiveBase {
     }
 
     /// Sets the wheel speeds and waits until the period is over; after a stop, until the robot
-    /// stands. The robot moves only while odometry and scans come.
+    /// stands. Nothing is sent if a pause has begun.
     fn command(&mut self, wheels: WheelSpeeds) -> Result<(), RobotError> {
         if (self.stop)() {
             return Err(RobotError::Stopped);
         }
         let stopping = wheels == WheelSpeeds::STOP;
-        let (begun, before, mut standing) = loop {
-            if !stopping {
-                self.wheels.wait()?;
-            }
-            // The period begins now, not at the last odometry.
-            let last = self.take_odometry();
-            if !stopping {
-                self.check_odometry()?;
-                if let Some(scanner) = &mut self.scanner {
-                    scanner.update(self.patience)?;
-                }
-            }
-            let mut standing = Standing::default();
-            if let Some(last) = last {
-                standing.is_seen(last);
-            }
-            if self.wheels.command(wheels)? {
-                break (self.last.stamp, self.reading(), standing);
-            }
-        };
-        let over = begun + (PERIOD * SECOND as f64) as Nanoseconds;
-        let (mut moves, mut back) = (false, 0);
+        // The period begins now, not at the last odometry.
+        let mut standing = Standing::default();
+        if let Some(last) = self.take_odometry()? {
+            standing.is_seen(last);
+        }
+        if !self.wheels.command(wheels)? {
+            return Ok(());
+        }
+        let (before, mut last) = (self.reading(), self.last);
+        let over = last.stamp + (PERIOD * SECOND as f64) as Nanoseconds;
+        let (odometry, stamps, mut moves) = (&self.odometry, &mut self.stamps, false);
         let arrived = |now: Reckoning| {
-            back = begun.saturating_sub(now.stamp);
-            let stood = now.stamp > begun && standing.is_seen(now);
+            if !stamps.is_later(last.stamp, now.stamp) {
+                return None;
+            }
+            if let Err(jumped) = check_way(odometry.topic(), &last, &now) {
+                return Some(Err(jumped));
+            }
+            last = now;
+            let stood = standing.is_seen(now);
             moves = stopping && now.stamp >= over && !stood;
-            (now.stamp >= over && (!stopping || stood)).then_some(now)
+            (now.stamp >= over && (!stopping || stood)).then_some(Ok(now))
         };
-        let now = self.odometry.wait(self.patience, self.stop, arrived);
+        let now = odometry.wait(self.patience, self.stop, arrived);
         let seconds = self.patience.as_secs_f64();
         self.last = now.map_err(|error| match error {
             RobotError::Silent { .. } if moves => RobotError::StillMoving { seconds },
-            RobotError::Silent { topic, .. } if back > 0 => went_back(&topic, back),
-            error => error,
-        })?;
+            error => self.stamps.explain(error),
+        })??;
         self.arrived = Instant::now();
         self.sample(wheels);
+        if self.wheels.is_interrupted() {
+            self.response.discard();
+        }
         self.response.add(wheels, before, self.reading());
         if self.response.still() >= STILL {
             return Err(RobotError::DoesNotMove { motions: STILL });
         }
         Ok(())
     }
+
+    /// Stops the wheels after an error.
+    pub(super) fn or_halt<T>(&self, done: Result<T, RobotError>) -> Result<T, RobotError> {
+        if done.is_err() {
+            self.halt();
+        }
+        done
+    }
+}
+
+/// # Errors
+/// Returns an error if the robot cannot have gone from one reading to a later one.
+fn check_way(topic: &str, from: &Reckoning, to: &Reckoning) -> Result<(), RobotError> {
+    let seconds = to.stamp.saturating_sub(from.stamp) as f64 / SECOND as f64;
+    let (metres, turned) = (to.at.distance(&from.at), from.at.seen(to.at.heading).abs());
+    if metres <= 2.0 * SPEED * seconds + JUMP && turned <= 2.0 * TURN_RATE * seconds + JUMP_ANGLE {
+        return Ok(());
+    }
+    let degrees = turned.to_degrees();
+    Err(RobotError::OdometryJumped { topic: topic.to_owned(), metres, degrees, seconds })
 }
 
 impl Base for LiveBase {
+    fn wait_for_pause(&mut self) -> Result<bool, RobotError> {
+        let ready = self.get_ready();
+        self.or_halt(ready)
+    }
+
     fn drive(&mut self, wheels: WheelSpeeds) -> Result<TimedOdometry, RobotError> {
-        match self.command(wheels) {
-            Ok(()) => Ok(self.reading()),
-            Err(error) => {
-                self.halt();
-                Err(error)
-            }
-        }
+        let done = self.command(wheels);
+        self.or_halt(done).map(|()| self.reading())
     }
 
     fn reading(&self) -> TimedOdometry {
@@ -263,7 +330,8 @@ impl Drop for LiveBase {
             let stood = |now: Reckoning| standing.is_seen(now).then_some(());
             match self.odometry.wait(REPEAT_INTERVAL, || false, stood) {
                 Ok(()) | Err(RobotError::Closed { .. }) => break,
-                Err(_) => {}
+                Err(RobotError::Silent { .. }) => {}
+                Err(_) => sleep(REPEAT_INTERVAL),
             }
         }
     }
@@ -301,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn readings_that_go_back_in_time_say_nothing() {
+    fn readings_that_go_back_in_time_are_ignored() {
         let at = Odometry { position: [1.0, 0.0], heading: 0.0 };
         let reading = |stamp| Reckoning { stamp, at, wheels: WheelSpeeds::STOP };
         let mut standing = Standing::default();

@@ -1,7 +1,7 @@
 //! What is read of the messages of a live robot. Their encodings are those of ROS 1 and ROS 2.
 //!
-//! RawBytes from outside are not trusted: a body that is too short or too long is rejected, and no memory is allocated for a
-//! length that the body does not have.
+//! Messages are not trusted: a body that is too short or too long is rejected, and no memory is allocated for a length that
+//! the body does not have.
 
 use std::{fmt, io::Cursor};
 
@@ -22,7 +22,7 @@ use toposlam_model::driving::{
     odometry,
     scene::{MarkerView, undirected},
 };
-use toposlam_vision::laser::scan::{Scan, ScanGeometry};
+use toposlam_vision::laser::scan::{Scan, ScanError, ScanGeometry};
 
 use crate::superscout::WheelSpeeds;
 
@@ -49,15 +49,22 @@ pub(crate) struct Stamped<T> {
     pub(crate) content: T,
 }
 
+/// A marker in a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MarkerReading {
+    pub(crate) frame: String,
+    pub(crate) marker: MarkerView,
+}
+
 /// The readings of a scanner in a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ScanReading {
     pub(crate) frame: String,
-    geometry: ScanGeometry,
-    ranges: Vec<f32>,
+    pub(super) geometry: ScanGeometry,
+    pub(super) ranges: Vec<f32>,
 }
 
-/// RawBytes or a text, after their length; a text need not be UTF-8.
+/// Bytes or a text, after their length; a text need not be UTF-8.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct RawBytes(pub(crate) Vec<u8>);
 
@@ -169,9 +176,12 @@ pub(crate) fn scan_reading(message: LaserScanMessage<Vec<f32>, RawBytes>) -> Sta
 }
 
 impl ScanReading {
-    /// The scan of a scanner with this mount; `None` if it is no scan.
-    pub(crate) fn scan(self, mount: &Mount) -> Option<Scan> {
-        Scan::new(mount.seen_from_above(self.geometry), self.ranges, mount.robot_from_scanner).ok()
+    /// The scan of a scanner with this mount.
+    ///
+    /// # Errors
+    /// Returns an error if it is no scan.
+    pub(crate) fn scan(self, mount: &Mount) -> Result<Scan, ScanError> {
+        Scan::new(mount.seen_from_above(self.geometry), self.ranges, mount.robot_from_scanner)
     }
 }
 
@@ -183,10 +193,11 @@ pub(crate) fn marker_message(stamp: Nanoseconds, marker: &MarkerView) -> PoseSta
 }
 
 /// The marker of a message; `None` if a number in it is not finite.
-pub(crate) fn marker_view(message: &PoseStamped<RawBytes>) -> Option<Stamped<MarkerView>> {
+pub(crate) fn marker_reading(message: &PoseStamped<RawBytes>) -> Option<Stamped<MarkerReading>> {
     let odometry::Odometry { position, heading } = message.pose.to_floor()?;
     let marker = MarkerView { position, axis: undirected(heading), door: None };
-    Some(Stamped { stamp: nanoseconds(message.header.stamp), content: marker })
+    let content = MarkerReading { frame: message.header.frame_id.text(), marker };
+    Some(Stamped { stamp: nanoseconds(message.header.stamp), content })
 }
 
 /// A time. In ROS 1 the seconds have no sign.

@@ -5,12 +5,15 @@
 //! They have no other connection.
 
 mod base;
+#[cfg(test)]
+mod message_tests;
 pub(crate) mod messages;
 #[cfg(test)]
 mod motion_tests;
 mod response;
 mod robot;
 mod scanner;
+mod stamps;
 pub(crate) mod topic;
 
 use std::time::Duration;
@@ -59,12 +62,18 @@ impl Default for RobotTopics {
 
 /// The topic of the commands to the wheels.
 pub(crate) trait Wheels {
-    /// Waits until the wheels may move.
-    fn wait(&self) -> Result<(), RobotError> {
-        Ok(())
+    /// Waits until the wheels may move. Whether a pause stopped them since the last call.
+    fn wait(&self) -> Result<bool, RobotError> {
+        Ok(false)
     }
 
-    /// Sends a command, and returns whether it did: while the wheels may not move, only a stop is sent.
+    /// Whether a pause stopped the wheels since the last [`wait`](Self::wait).
+    fn is_interrupted(&self) -> bool {
+        false
+    }
+
+    /// Sends a command, and returns whether it did. A pause stops the wheels: until the next [`wait`](Self::wait), only a
+    /// stop is sent.
     fn command(&self, wheels: WheelSpeeds) -> Result<bool, RobotError>;
 }
 

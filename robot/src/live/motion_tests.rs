@@ -203,6 +203,28 @@ fn motions_that_odometry_does_not_show_are_counted() {
     assert_eq!(base.meter.still(), 0);
 }
 
+/// A meter after a motion whose last reading but one came after this time in seconds, and that odometry does not show.
+fn meter_after(last: f64, change: impl FnOnce(&mut ResponseMeter)) -> ResponseMeter {
+    let mut meter = ResponseMeter::default();
+    let at = |time| TimedOdometry { time, ..TimedOdometry::default() };
+    let ahead = WheelSpeeds::from_motion(0.2, 0.0);
+    let times = [0.0, 0.25, 0.5, 0.75, 0.75 + last];
+    for pair in times.windows(2) {
+        meter.add(ahead, at(pair[0]), at(pair[1]));
+    }
+    change(&mut meter);
+    meter.add(WheelSpeeds::STOP, at(times[4]), at(times[4] + PERIOD));
+    meter
+}
+
+/// After a pause it does not show how the base obeys.
+#[test]
+fn a_motion_that_was_interrupted_is_not_measured() {
+    assert_eq!(meter_after(0.25, |_| {}).still(), 1);
+    assert_eq!(meter_after(0.25, ResponseMeter::discard).still(), 0);
+    assert_eq!(meter_after(0.75, |_| {}).still(), 0);
+}
+
 #[test]
 fn the_robot_stops_where_its_room_ends() {
     for lag in [0.05, 0.2, 0.5] {

@@ -11,7 +11,10 @@ const MOST: f64 = 1.0;
 /// and the accuracy.
 const STEP: f64 = 0.01;
 /// The part of a new measurement in the next estimate.
-const NEWS: f64 = 0.3;
+const WEIGHT: f64 = 0.3;
+/// A motion with a longer time between two of its readings is not measured, in seconds: the robot was paused, messages were
+/// lost, or a clock jumped.
+const GAP: f64 = 2.5 * PERIOD;
 /// Shorter motions are not measured, in metres or radians.
 const LEAST: f64 = 0.08;
 /// Uncertainty of what a wheel does of a command, as a share; of a reading, in metres or radians.
@@ -40,6 +43,8 @@ pub(super) struct ResponseMeter {
     turn_acceleration: f64,
     /// The present motion: its begin, and each command with the odometry after it.
     motion: Vec<Sample>,
+    /// Whether the present motion does not show how the base obeys.
+    is_discarded: bool,
     /// The number of motions in a row that were not carried out.
     still: u32,
 }
@@ -52,6 +57,7 @@ impl Default for ResponseMeter {
             acceleration: ACCELERATION,
             turn_acceleration: TURN_ACCELERATION,
             motion: Vec::new(),
+            is_discarded: false,
             still: 0,
         }
     }
@@ -72,6 +78,11 @@ impl ResponseMeter {
         self.still
     }
 
+    /// Does not measure the present motion: the base did not get all of its commands.
+    pub(super) fn discard(&mut self) {
+        self.is_discarded = !self.motion.is_empty();
+    }
+
     /// Adds a command, and the odometry before and after it.
     pub(super) fn add(&mut self, wheels: WheelSpeeds, before: TimedOdometry, after: TimedOdometry) {
         if self.motion.is_empty() {
@@ -80,15 +91,22 @@ impl ResponseMeter {
             }
             self.motion.push(Sample { speed: 0.0, turning: 0.0, reading: before });
         }
+        let is_stop = wheels == WheelSpeeds::STOP;
+        // A base may take longer to stand.
+        let measured = if is_stop { before } else { after };
+        let last = self.motion.last().map_or(measured.time, |last| last.reading.time);
+        self.is_discarded |= measured.time - last > GAP;
         let (speed, turning) = (wheels.speed(), wheels.turn_rate());
         self.motion.push(Sample { speed, turning, reading: after });
-        if wheels == WheelSpeeds::STOP {
+        if is_stop {
             let motion = Motion::new(&std::mem::take(&mut self.motion));
-            self.learn(&motion);
+            if !std::mem::take(&mut self.is_discarded) {
+                self.learn(&motion);
+            }
         } else {
             // A late message makes one period longer, not all.
             let lasted = after.time - before.time;
-            self.period += NEWS * (lasted.clamp(PERIOD, 2.0 * PERIOD) - self.period);
+            self.period += WEIGHT * (lasted.clamp(PERIOD, 2.0 * PERIOD) - self.period);
         }
     }
 
@@ -104,7 +122,7 @@ impl ResponseMeter {
         }
         self.still = 0;
         let found = motion.lag();
-        let lag = self.lag.map_or(found, |lag| lag + NEWS * (found - lag));
+        let lag = self.lag.map_or(found, |lag| lag + WEIGHT * (found - lag));
         self.lag = Some(lag);
         if motion.coasted(lag) > COASTS {
             let (limit, first) = if motion.is_turn {

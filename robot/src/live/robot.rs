@@ -5,13 +5,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-use toposlam_logs::record::Frame;
+use toposlam_logs::{is_robot_frame, record::Frame};
 use toposlam_model::driving::scene::MarkerView;
 
 use super::{
     FIRST, Wheels,
     base::LiveBase,
-    messages::{Nanoseconds, Reckoning, SentImage, Stamped},
+    messages::{MarkerReading, Nanoseconds, Reckoning, SentImage, Stamped},
     scanner::{ScanTopic, Scanner},
     topic::Subscription,
 };
@@ -47,13 +47,13 @@ pub enum LiveSensor {
 
 pub(crate) enum SensorTopics {
     Camera(Subscription<Stamped<SentImage>>),
-    Laser { scans: ScanTopic, markers: Subscription<Stamped<MarkerView>> },
+    Laser { scans: ScanTopic, markers: Subscription<Stamped<MarkerReading>> },
 }
 
 /// What is read of a sensor besides the scans, which belong to the base.
 enum SensorMessages {
     Images(Subscription<Stamped<SentImage>>),
-    Markers(Subscription<Stamped<MarkerView>>),
+    Markers(Subscription<Stamped<MarkerReading>>),
 }
 
 /// The topics of a robot, and the node to which they belong.
@@ -77,8 +77,17 @@ impl LiveRobot {
         patience: Duration,
         stop: fn() -> bool,
     ) -> Result<Self, RobotError> {
+        Self::within(patience.max(FIRST), connection, patience, stop)
+    }
+
+    /// The same if the first messages come within a time.
+    pub(super) fn within(
+        first: Duration,
+        connection: Connection,
+        patience: Duration,
+        stop: fn() -> bool,
+    ) -> Result<Self, RobotError> {
         let Connection { wheels, odometry, sensor, node } = connection;
-        let first = patience.max(FIRST);
         let (messages, scanner) = match sensor {
             SensorTopics::Camera(images) => (SensorMessages::Images(images), None),
             SensorTopics::Laser { scans, markers } => {
@@ -86,13 +95,14 @@ impl LiveRobot {
             }
         };
         let mut base = LiveBase::new(wheels, odometry, scanner, first, stop)?;
-        if let SensorMessages::Images(images) = &messages {
-            images.wait(first, stop, |_| Some(()))?;
-        }
-        if let Some(scanner) = &mut base.scanner {
-            scanner.wait(first, stop, Some)?;
-        }
         base.patience = patience;
+        if let SensorMessages::Images(images) = &messages {
+            wait_for_image(&base, images, first)?;
+        }
+        if let Some(mut scanner) = base.scanner.take() {
+            scanner.wait(first, stop, |topic, stamp| base.check_clock(topic, stamp), Some)?;
+            base.scanner = Some(scanner);
+        }
         Ok(Self { base, messages, asked: 0, _node: node })
     }
 
@@ -102,6 +112,7 @@ impl LiveRobot {
     }
 
     fn frame(&mut self) -> Result<Frame, RobotError> {
+        let asked = Instant::now();
         let TimedOdometry { time: ended, odometry } = self.base.reading();
         let (id, patience, stop) = (self.asked, self.base.patience, self.base.stop);
         let mut behind = None;
@@ -120,9 +131,10 @@ impl LiveRobot {
                 })
             }
             (SensorMessages::Markers(markers), Some(scanner)) => {
-                let scanned = scanner.wait(patience, stop, &mut is_fresh);
+                let check_clock = |topic: &str, stamp| base.check_clock(topic, stamp);
+                let scanned = scanner.wait(patience, stop, check_clock, &mut is_fresh);
                 scanned.and_then(|(frame, scan)| {
-                    let marker = seen_marker(base, markers, ended, frame.taken)?;
+                    let marker = seen_marker(base, markers, asked, [ended, frame.taken])?;
                     Ok(Frame { scan: Some(scan), marker, ..frame })
                 })
             }
@@ -141,29 +153,81 @@ impl LiveRobot {
     }
 }
 
+/// Waits for an image with a stamp of the clock of odometry.
+fn wait_for_image(
+    base: &LiveBase,
+    images: &Subscription<Stamped<SentImage>>,
+    patience: Duration,
+) -> Result<(), RobotError> {
+    let mut fault = None;
+    let found = images.wait(patience, base.stop, |image| {
+        fault = base.check_clock(images.topic(), image.stamp).err();
+        fault.is_none().then_some(())
+    });
+    found.map_err(|error| match (error, fault) {
+        (RobotError::Silent { .. }, Some(fault)) => fault,
+        (error, _) => error,
+    })
+}
+
 /// The marker, if it is reported with the scan of this time, after the end of the last motion. It is reported only where
-/// it is seen, so that odometry says when it is too late.
+/// it is seen, so that the stamps of odometry show when it is too late.
+///
+/// # Errors
+/// Returns an error if messages come that do not show where the marker is: that it is not seen is not known then.
 fn seen_marker(
     base: &LiveBase,
-    markers: &Subscription<Stamped<MarkerView>>,
-    ended: f64,
-    taken: f64,
+    markers: &Subscription<Stamped<MarkerReading>>,
+    asked: Instant,
+    [ended, taken]: [f64; 2],
 ) -> Result<Option<MarkerView>, RobotError> {
     let until = Instant::now() + MARKER_DELAY;
+    let mut fault = None;
     loop {
         // Both are looked up before the marker.
         let is_late = Instant::now() >= until
             || base.seconds(base.stamp()) > taken + MARKER_DELAY.as_secs_f64();
-        let seen = |Stamped { stamp, content }| (base.seconds(stamp) > ended).then_some(content);
-        match markers.wait(if is_late { Duration::ZERO } else { LOOK }, base.stop, seen) {
-            Ok(marker) => return Ok(Some(marker)),
-            Err(RobotError::Silent { .. }) if is_late => return Ok(None),
+        let patience = if is_late { Duration::ZERO } else { LOOK };
+        let found = markers.wait_timed(patience, base.stop, |message, arrived| {
+            match marker_after(base, markers.topic(), ended, message) {
+                Ok(marker) => marker.map(Ok),
+                Err(other @ RobotError::OtherFrame { .. }) => Some(Err(other)),
+                Err(other) => {
+                    // A message that came before the last motion has an old stamp.
+                    fault = (arrived >= asked).then_some(other);
+                    None
+                }
+            }
+        });
+        match found {
+            Ok(marker) => return marker.map(Some),
+            Err(RobotError::Silent { .. }) if is_late => break,
             Err(RobotError::Silent { .. }) => {}
             Err(error) => return Err(error),
         }
     }
+    markers.check_readable()?;
+    fault.map_or(Ok(None), Err)
 }
 
+/// The marker of a message, if it was seen after this time.
+///
+/// # Errors
+/// Returns an error if it is not in the robot's frame, or its stamp is of another clock.
+fn marker_after(
+    base: &LiveBase,
+    topic: &str,
+    ended: f64,
+    Stamped { stamp, content }: Stamped<MarkerReading>,
+) -> Result<Option<MarkerView>, RobotError> {
+    let MarkerReading { frame, marker } = content;
+    if !is_robot_frame(&frame) {
+        let ours = "that of the robot: base_link, base_footprint or base".to_owned();
+        return Err(RobotError::OtherFrame { topic: topic.to_owned(), theirs: frame, ours });
+    }
+    base.check_clock(topic, stamp)?;
+    Ok((base.seconds(stamp) > ended).then_some(marker))
+}
 /// Interval of looks at odometry while a marker may come.
 const LOOK: Duration = Duration::from_millis(2);
 /// A marker that was seen with a scan is reported within this time after it, by the clock of the robot.
@@ -173,11 +237,8 @@ impl Robot for LiveRobot {
     fn capture(&mut self) -> Result<Frame, RobotError> {
         self.asked += 1;
         let frame = self.frame();
-        match &frame {
-            Ok(_) => self.base.read(),
-            Err(_) => self.base.halt(),
-        }
-        frame
+        let read = frame.and_then(|frame| self.base.read().map(|()| frame));
+        self.base.or_halt(read)
     }
 
     fn turn(&mut self, angle: f64) -> Result<(), RobotError> {
@@ -185,6 +246,9 @@ impl Robot for LiveRobot {
     }
 
     fn forward(&mut self, distance: f64) -> Result<(), RobotError> {
+        if let Some(scanner) = &self.base.scanner {
+            self.base.or_halt(scanner.check_view())?;
+        }
         Drive(&mut self.base).forward(distance)
     }
 

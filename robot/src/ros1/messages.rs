@@ -8,9 +8,9 @@ use toposlam_vision::laser::scan::Scan;
 
 use crate::{
     live::messages::{
-        Nanoseconds, RawBytes, Reckoning, ScanReading, SentImage, Stamped, image_file,
-        marker_message, marker_view, odometry_message, reckoning, scan_reading, time, twist_of,
-        wheel_speeds,
+        MarkerReading, Nanoseconds, RawBytes, Reckoning, ScanReading, SentImage, Stamped,
+        image_file, marker_message, marker_reading, odometry_message, reckoning, scan_reading,
+        time, twist_of, wheel_speeds,
     },
     superscout::WheelSpeeds,
 };
@@ -84,9 +84,9 @@ pub(super) fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Ve
 }
 
 /// The marker; `None` if it is no such message, or a number in it is not finite.
-pub(super) fn read_marker(bytes: &[u8]) -> Option<Stamped<MarkerView>> {
+pub(super) fn read_marker(bytes: &[u8]) -> Option<Stamped<MarkerReading>> {
     let (_, message) = read::<Numbered<PoseStamped<RawBytes>>>(bytes)?;
-    marker_view(&message)
+    marker_reading(&message)
 }
 
 #[cfg(test)]
@@ -130,11 +130,11 @@ mod tests {
             Scan::new(geometry, vec![1.0, f32::INFINITY, 2.5], nalgebra::Isometry2::identity());
         let sweep = Stamped { stamp: 7, content: sweep.unwrap() };
         let Stamped { stamp, content } = read_scan(&scan(1, 7, &sweep.content)).unwrap();
-        assert_eq!((stamp, content.scan(&Mount::centre())), (sweep.stamp, Some(sweep.content)));
+        assert_eq!((stamp, content.scan(&Mount::centre())), (sweep.stamp, Ok(sweep.content)));
         let found = MarkerView { position: [0.5, -0.25], axis: 1.0, door: None };
         let read = read_marker(&marker(1, 9, &found)).unwrap();
-        assert_eq!((read.stamp, read.content.position), (9, found.position));
-        assert!((read.content.axis - 1.0).abs() < 1e-12, "{read:?}");
+        assert_eq!((read.stamp, read.content.marker.position), (9, found.position));
+        assert!((read.content.marker.axis - 1.0).abs() < 1e-12, "{read:?}");
     }
 
     #[test]

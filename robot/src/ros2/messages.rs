@@ -18,9 +18,9 @@ use toposlam_vision::laser::scan::Scan;
 
 use crate::{
     live::messages::{
-        Nanoseconds, RawBytes, Reckoning, ScanReading, SentImage, Stamped, image_file,
-        image_pixels, marker_message, marker_view, nanoseconds, odometry_message, reckoning,
-        scan_reading, time, twist_of, wheel_speeds,
+        MarkerReading, Nanoseconds, RawBytes, Reckoning, ScanReading, SentImage, Stamped,
+        image_file, image_pixels, marker_message, marker_reading, nanoseconds, odometry_message,
+        reckoning, scan_reading, time, twist_of, wheel_speeds,
     },
     superscout::WheelSpeeds,
 };
@@ -135,8 +135,8 @@ pub(super) fn marker(stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
 }
 
 /// The marker; `None` if it is no such message, or a number in it is not finite.
-pub(super) fn read_marker(body: &EncodedBody) -> Option<Stamped<MarkerView>> {
-    marker_view(&read::<PoseStamped<RawBytes>>(body)?)
+pub(super) fn read_marker(body: &EncodedBody) -> Option<Stamped<MarkerReading>> {
+    marker_reading(&read::<PoseStamped<RawBytes>>(body)?)
 }
 
 /// The topic of the time of a simulation.
@@ -215,10 +215,10 @@ mod tests {
         let sweep = Scan::new(geometry, vec![1.0, 2.5, 30.0], mount.robot_from_scanner).unwrap();
         let Stamped { stamp, content } = read_scan(&body(scan(7, &sweep))).unwrap();
         assert_eq!((stamp, content.frame.as_str()), (7, BASE));
-        assert_eq!(content.scan(&mount), Some(sweep));
+        assert_eq!(content.scan(&mount), Ok(sweep));
         let seen = MarkerView { position: [1.0, -0.5], axis: 0.75, door: None };
         let found = read_marker(&body(marker(8, &seen))).unwrap();
-        assert!((found.content.axis - 0.75).abs() < 1e-12 && found.stamp == 8, "{found:?}");
+        assert!((found.content.marker.axis - 0.75).abs() < 1e-12 && found.stamp == 8, "{found:?}");
     }
 
     /// Two rows of one pixel, with a byte after each row.

@@ -39,7 +39,7 @@ use self::{
     safety::SafetyWatch,
     service::TriggerResponse,
     status::{PublishedState, STATE, STATE_TYPE},
-    wheels::{StampClock, Standstill, WheelsTopic},
+    wheels::{PauseRefusal, StampClock, Standstill, WheelsTopic},
 };
 use crate::{
     live::{
@@ -57,6 +57,9 @@ pub use messages::WheelsType;
 pub use node::RobotDomain;
 pub use run_topics::RunTopics;
 
+const ODOMETRY: &str = <OdometryMessage as Message>::TYPE;
+const SCAN: &str = <LaserScanMessage<&[f32]> as Message>::TYPE;
+const MARKER: &str = <PoseStamped as Message>::TYPE;
 /// The types of images: files, and pixels.
 const IMAGES: [&str; 2] =
     [<CompressedImage<FileBytes> as Message>::TYPE, <RawImage<FileBytes> as Message>::TYPE];
@@ -69,7 +72,7 @@ const TRANSFORMS: Duration = Duration::from_secs(6);
 #[derive(Clone, Copy, Debug)]
 pub struct DriveSettings {
     pub sensor: LiveSensor,
-    /// The type of the commands to the wheels, unless it is the one that the robot reads.
+    /// The type of the commands to the wheels, if the robot reads two.
     pub wheels_type: Option<WheelsType>,
     /// Whether commands have the time of `/clock`, and not that of the system.
     pub sim_time: bool,
@@ -94,38 +97,37 @@ pub fn connect(
     let begun = Instant::now();
     let DriveSettings { sensor, wheels_type, sim_time, patience, stop, abort } = *settings;
     let node = Arc::new(DdsNode::new(domain)?);
-    let published = |topic: &str, kind| {
-        node.type_of(topic, OtherSide::Publishes, &[kind], FIRST, stop).map(drop)
+    let published = |topic: &str, kinds: &[&'static str]| {
+        node.type_of(topic, OtherSide::Publishes, kinds, FIRST, stop)
     };
-    let odometry_type = <OdometryMessage as Message>::TYPE;
-    published(&topics.odometry, odometry_type)?;
-    let odometry = node.subscribe(&topics.odometry, odometry_type, messages::read_odometry)?;
-    let sensor = match sensor {
+    published(&topics.odometry, &[ODOMETRY])?;
+    let odometry = node.subscribe(&topics.odometry, ODOMETRY, messages::read_odometry)?;
+    let (sensor, sensed) = match sensor {
         LiveSensor::Camera => {
-            let [file, raw] = IMAGES;
-            let kind =
-                node.type_of(&topics.images, OtherSide::Publishes, &[file, raw], FIRST, stop)?;
-            let read = if kind == raw { messages::read_raw_image } else { messages::read_image };
-            SensorTopics::Camera(node.subscribe(&topics.images, kind, read)?)
+            let kind = published(&topics.images, &IMAGES)?;
+            let read =
+                if kind == IMAGES[1] { messages::read_raw_image } else { messages::read_image };
+            let images = node.subscribe(&topics.images, kind, read)?;
+            (SensorTopics::Camera(images), vec![(&topics.images, kind)])
         }
         LiveSensor::Laser => {
-            let kind = <LaserScanMessage<&[f32]> as Message>::TYPE;
-            published(&topics.scans, kind)?;
-            let scans = node.subscribe(&topics.scans, kind, messages::read_scan)?;
+            published(&topics.scans, &[SCAN])?;
+            let scans = node.subscribe(&topics.scans, SCAN, messages::read_scan)?;
             let (frame, mount) = scanner_mount(&node, &scans, stop)?;
-            let kind = <PoseStamped as Message>::TYPE;
-            let markers = node.subscribe(&topics.marker, kind, messages::read_marker)?;
-            SensorTopics::Laser { scans: ScanTopic { scans, frame: Some(frame), mount }, markers }
+            published(&topics.marker, &[MARKER])?;
+            let markers = node.subscribe(&topics.marker, MARKER, messages::read_marker)?;
+            let scans = ScanTopic { scans, frame: Some(frame), mount };
+            let sensed = vec![(&topics.scans, SCAN), (&topics.marker, MARKER)];
+            (SensorTopics::Laser { scans, markers }, sensed)
         }
     };
     let clock = if sim_time { simulated_clock(&node, stop)? } else { StampClock::System };
     // Another robot on these topics may have been found later.
     sleep(ALL_FOUND.saturating_sub(begun.elapsed()));
-    published(&topics.odometry, odometry_type)?;
-    let wheels_type = match wheels_type {
-        Some(given) => given,
-        None => wheels_type_of(&node, &topics.wheels, stop)?,
-    };
+    for (topic, kind) in [&[(&topics.odometry, ODOMETRY)], &sensed[..]].concat() {
+        published(topic, &[kind])?;
+    }
+    let wheels_type = wheels_type_of(&node, &topics.wheels, wheels_type, stop)?;
     let writer = node.advertise(&topics.wheels, wheels_type.type_name())?;
     let state = node.advertise_last(STATE, STATE_TYPE)?;
     let state = Arc::new(PublishedState::new(state, clock.clone()));
@@ -164,10 +166,11 @@ fn serve(
 ) -> Result<(), RobotError> {
     let (wheels_of, state_of) = (wheels.clone(), state.clone());
     node.serve("/toposlam/pause", move || {
-        let success = wheels_of.pause();
-        state_of.change(|state| state.is_paused |= success);
-        let message = if success { "the wheels stand" } else { "the wheels stand already" };
-        TriggerResponse { success, message }
+        let paused = wheels_of.pause();
+        let is_paused = matches!(paused, Ok(()) | Err(PauseRefusal::NotSent));
+        state_of.change(|state| state.is_paused |= is_paused);
+        let message = paused.map_or_else(PauseRefusal::message, |()| "the stop command is sent");
+        TriggerResponse { success: paused.is_ok(), message }
     })?;
     let (wheels_of, state_of) = (wheels.clone(), state.clone());
     node.serve("/toposlam/resume", move || {
@@ -182,23 +185,31 @@ fn serve(
     })
 }
 
-/// The type of the commands that the robot reads.
+/// The type of the commands that the robot reads; if it reads both, the given one.
 fn wheels_type_of(
     node: &DdsNode,
     topic: &str,
+    given: Option<WheelsType>,
     stop: fn() -> bool,
 ) -> Result<WheelsType, RobotError> {
-    let known = WheelsType::ALL.map(WheelsType::type_name);
-    let found = node.type_of(topic, OtherSide::Reads, &known, FIRST, stop);
-    let found = found.map_err(|error| match error {
-        RobotError::OtherType { topic, theirs, .. } if theirs.contains(" and ") => {
-            let ours = "one of them; --cmd-vel-type says which".to_owned();
-            RobotError::OtherType { topic, theirs, ours }
+    let kinds = given.map_or(WheelsType::ALL.to_vec(), |given| vec![given]);
+    let known: Vec<_> = kinds.iter().map(|kind| kind.type_name()).collect();
+    match (node.type_of(topic, OtherSide::Reads, &known, FIRST, stop), given) {
+        (Ok(found), _) => {
+            let kind = kinds.into_iter().find(|kind| kind.type_name() == found);
+            Ok(kind.unwrap_or(WheelsType::Twist))
         }
-        error => error,
-    })?;
-    let kind = WheelsType::ALL.into_iter().find(|kind| kind.type_name() == found);
-    Ok(kind.unwrap_or(WheelsType::Twist))
+        (Err(RobotError::OtherType { theirs, .. }), Some(given))
+            if theirs.split(" and ").any(|kind| kind == given.type_name()) =>
+        {
+            Ok(given)
+        }
+        (Err(RobotError::OtherType { topic, theirs, .. }), None) if theirs.contains(" and ") => {
+            let ours = "one of them; select it with --cmd-vel-type".to_owned();
+            Err(RobotError::OtherType { topic, theirs, ours })
+        }
+        (Err(error), _) => Err(error),
+    }
 }
 
 /// The frame of the scanner of a topic, and where it is on the robot, by its transforms.
@@ -214,7 +225,7 @@ fn scanner_mount(
         node.listen(topic, <TFMessage as Message>::TYPE, stays, move |message| {
             let Some(frames) = frames.upgrade() else { return };
             let mut frames = frames.lock().unwrap_or_else(PoisonError::into_inner);
-            // Others' transforms of another form say nothing about this scanner.
+            // What cannot be read is not the transform of this scanner.
             let _ = message.and_then(|body| reader.add(&body, &mut frames));
         })?;
     }

@@ -16,13 +16,14 @@ use std::{
 
 use futures::StreamExt;
 use rustdds::{
-    DomainParticipant, DomainParticipantBuilder, Publisher, QosPolicies, QosPolicyBuilder,
+    DomainParticipant, DomainParticipantBuilder, GUID, Publisher, QosPolicies, QosPolicyBuilder,
     RTPSEntity, RepresentationIdentifier, SampleIdentity, Subscriber, Topic, TopicKind,
     WriteOptionsBuilder,
     bytes::Bytes,
     dds::qos::policy::{DataRepresentation, DataRepresentationId},
     no_key::{
-        DataReader, DataWriter, Decode, DefaultDecoder, DeserializerAdapter, SerializerAdapter,
+        DataReader, DataSample, DataWriter, Decode, DefaultDecoder, DeserializerAdapter,
+        SerializerAdapter,
     },
     policy::{Durability, History, Reliability},
 };
@@ -215,17 +216,30 @@ impl DdsNode {
         mut received: impl FnMut(Option<EncodedBody>) + Send + 'static,
     ) -> Result<(), RobotError> {
         let qos = if stays { reliable(Durability::TransientLocal, DEPTH) } else { best_effort() };
+        self.listen_to_writers(topic, type_name, qos, move |_, message| received(message))
+    }
+
+    /// Calls a function with each message of a topic, and the writer of those that came whole.
+    fn listen_to_writers(
+        &self,
+        topic: &str,
+        type_name: &str,
+        qos: QosPolicies,
+        mut received: impl FnMut(Option<GUID>, Option<EncodedBody>) + Send + 'static,
+    ) -> Result<(), RobotError> {
         let reader = self.reader(self.dds_name(topic), type_name, qos)?;
         self.spawn(async move {
-            let mut messages = reader.async_bare_sample_stream();
+            let mut messages = reader.async_sample_stream();
             while let Some(message) = messages.next().await {
-                received(message.ok());
+                let message = message.ok();
+                let writer = message.as_ref().map(|sample| sample.sample_info().writer_guid());
+                received(writer, message.map(DataSample::into_value));
             }
         });
         Ok(())
     }
 
-    /// Subscribes to a topic. Messages that cannot be read are counted and skipped.
+    /// Subscribes to a topic of one other node. Messages that cannot be read are counted and skipped.
     pub(super) fn subscribe<T: Send + 'static>(
         &self,
         topic: &str,
@@ -233,7 +247,11 @@ impl DdsNode {
         read: impl Fn(&EncodedBody) -> Option<T> + Send + 'static,
     ) -> Result<Subscription<T>, RobotError> {
         let (inbox, subscription) = topic::subscription(topic);
-        self.listen(topic, type_name, false, move |message| {
+        let mut sources = MessageSources::default();
+        self.listen_to_writers(topic, type_name, best_effort(), move |writer, message| {
+            if writer.is_some_and(|writer| sources.are_two(writer)) {
+                inbox.record_two_sources();
+            }
             inbox.add(message.and_then(|body| read(&body)));
         })?;
         Ok(subscription)
@@ -330,11 +348,14 @@ impl DdsNode {
         }
     }
 
-    /// The types of a topic that others publish.
+    /// The types of a topic that others publish, each with why it cannot be read, if so.
     pub(super) fn published_types(&self, topic: &str) -> BTreeSet<String> {
         let endpoints = self.endpoints(&self.dds_name(topic), OtherSide::Publishes);
-        let plain = endpoints.into_iter().filter(|(_, obstacle)| obstacle.is_none());
-        plain.map(|(kind, _)| ros_type(&kind)).collect()
+        let described = endpoints.into_iter().map(|(kind, obstacle)| match obstacle {
+            Some(obstacle) => format!("{} {obstacle}", ros_type(&kind)),
+            None => ros_type(&kind),
+        });
+        described.collect()
     }
 
     /// The type of each endpoint of a topic that others have, and why no message would pass between it and ours, if none
@@ -362,6 +383,31 @@ impl DdsNode {
                 described.collect()
             }
         }
+    }
+}
+
+/// The writers of the messages of a topic.
+#[derive(Default)]
+struct MessageSources {
+    last: Option<GUID>,
+    /// Those before it, the last of them at the end.
+    earlier: Vec<GUID>,
+}
+
+/// The number of earlier writers that are kept.
+const EARLIER: usize = 16;
+
+impl MessageSources {
+    /// Whether the writer of a message sends by turns with another one. A robot that starts again has a new writer, and the
+    /// old one sends nothing more.
+    fn are_two(&mut self, writer: GUID) -> bool {
+        if self.last == Some(writer) {
+            return false;
+        }
+        self.earlier.extend(self.last.replace(writer));
+        let kept = self.earlier.len().saturating_sub(EARLIER);
+        self.earlier.drain(..kept);
+        self.earlier.contains(&writer)
     }
 }
 
@@ -484,14 +530,96 @@ impl SerializerAdapter<Vec<u8>> for AsItIs {
 
 #[cfg(test)]
 mod tests {
+    use std::net::TcpListener;
+
     use super::*;
+
+    /// A domain that no other test uses, of this process or another one: it holds a port, which DDS does not use.
+    struct OwnDomain {
+        number: u16,
+        _port: TcpListener,
+    }
+
+    impl OwnDomain {
+        fn new() -> Self {
+            let free = (101..=200).find_map(|number| {
+                let port = TcpListener::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * number)).ok()?;
+                Some(Self { number, _port: port })
+            });
+            free.unwrap()
+        }
+
+        fn robot(&self, namespace: &str) -> RobotDomain {
+            let namespace = namespace.to_owned();
+            RobotDomain { number: self.number, namespace, ..RobotDomain::default() }
+        }
+    }
+
+    #[test]
+    fn tests_at_a_time_have_different_domains() {
+        let (one, other) = (OwnDomain::new(), OwnDomain::new());
+        assert_ne!(one.number, other.number);
+    }
+
+    const ODOMETRY: &str = "nav_msgs/msg/Odometry";
+
+    /// Publishes odometry until a subscription to it has had this message.
+    fn send(
+        writer: &Writer,
+        subscription: &Subscription<u8>,
+        message: u8,
+    ) -> Result<(), RobotError> {
+        let until = Instant::now() + Duration::from_secs(20);
+        loop {
+            writer.publish(vec![message; 4])?;
+            let is_it = |found| (found == message).then_some(());
+            match subscription.wait(LOOK, || false, is_it) {
+                Err(RobotError::Silent { .. }) if Instant::now() < until => {}
+                found => return found,
+            }
+        }
+    }
+
+    /// A driver that starts again has another writer.
+    #[test]
+    fn two_nodes_that_send_by_turns_are_an_error_and_one_that_starts_again_is_not() {
+        let own = OwnDomain::new();
+        let node = || DdsNode::new(&own.robot("")).unwrap();
+        let (driver, robot, again) = (node(), node(), node());
+        let read = |body: &EncodedBody| body.bytes.first().copied();
+        let subscription = driver.subscribe("/odom", ODOMETRY, read).unwrap();
+        let [first, second] =
+            [&robot, &again].map(|node| node.advertise("/odom", ODOMETRY).unwrap());
+        for (writer, message) in [(&first, 1), (&second, 2)] {
+            send(writer, &subscription, message).unwrap();
+        }
+        let two = RobotError::TwoSources { topic: "/odom".to_owned() };
+        assert_eq!(send(&first, &subscription, 3), Err(two.clone()));
+        assert_eq!(subscription.check_source(), Err(two));
+    }
+
+    #[test]
+    fn the_types_of_a_topic_are_those_of_all_its_writers() {
+        let own = OwnDomain::new();
+        let node = || DdsNode::new(&own.robot("")).unwrap();
+        let (watch, robot) = (node(), node());
+        assert!(watch.published_types("/hazard_detection").is_empty());
+        let _writers = ["std_msgs/msg/String", ODOMETRY]
+            .map(|kind| robot.advertise("/hazard_detection", kind).unwrap());
+        let until = Instant::now() + Duration::from_secs(20);
+        while watch.published_types("/hazard_detection").len() < 2 && Instant::now() < until {
+            sleep(LOOK);
+        }
+        let types: Vec<_> = watch.published_types("/hazard_detection").into_iter().collect();
+        assert_eq!(types, [ODOMETRY, "std_msgs/msg/String"]);
+    }
 
     /// A client as Fast DDS makes it: it says in the header of its request by which reader it reads replies, and takes those
     /// that name this reader and the number of its request.
     #[test]
     fn a_client_that_says_who_it_is_in_the_header_gets_its_reply() {
-        let number = (100 + process::id() % 100) as u16;
-        let domain = RobotDomain { number, namespace: "robot1".to_owned(), ..Default::default() };
+        let own = OwnDomain::new();
+        let domain = own.robot("robot1");
         let (server, client) = (DdsNode::new(&domain).unwrap(), DdsNode::new(&domain).unwrap());
         let mut calls = 0;
         let answer = move || {

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{live::messages::RawBytes, robot::RobotError};
 
-/// What a message says about the safety of a robot.
+/// What a message shows of the safety of a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum SafetyReading {
     Clear,
@@ -195,7 +195,7 @@ impl Drop for SafetyWatch {
 }
 
 impl SafetyTopic {
-    /// Subscribes if somebody publishes this topic with this type. Whether it is done.
+    /// Subscribes if somebody publishes this topic with this type. Whether it is done. Another type is a warning.
     fn subscribe(
         &self,
         node: &DdsNode,
@@ -203,12 +203,19 @@ impl SafetyTopic {
         state: &Arc<PublishedState>,
     ) -> bool {
         let types = node.published_types(self.name);
-        if types.len() != 1 || !types.contains(self.type_name) {
+        let is_known = types.len() == 1 && types.contains(self.type_name);
+        if !is_known {
+            let types: Vec<_> = types.into_iter().collect();
+            let cause = (!types.is_empty()).then(|| format!("its type is {}", types.join(" and ")));
+            state.change(|state| state.show_unread(self.name, cause));
             return false;
         }
         let (wheels, state, read, name) = (wheels.clone(), state.clone(), self.read, self.name);
-        let received =
-            move |message: Option<EncodedBody>| match message.and_then(|body| read(&body)) {
+        let received = move |message: Option<EncodedBody>| {
+            let reading = message.and_then(|body| read(&body));
+            let fault = reading.is_none().then(|| "its messages have another form".to_owned());
+            state.change(|state| state.show_unread(name, fault));
+            match reading {
                 Some(SafetyReading::Hazard(what)) => {
                     let hazard = RobotError::Hazard { topic: name, what };
                     if wheels.end(hazard.clone()) {
@@ -219,7 +226,8 @@ impl SafetyTopic {
                     state.change(|state| state.battery = Some(charge));
                 }
                 Some(SafetyReading::Clear) | None => {}
-            };
+            }
+        };
         node.listen(self.name, self.type_name, false, received).is_ok()
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A request of Fast DDS has only its fields; who called is in the header of its message, and so is in the reply which
 //! request it answers. A request of Cyclone DDS begins with sixteen bytes that say who called, and its reply with the same.
-//! A request of `Trigger` has no fields, but one byte in their place, so the length says which of the two it is, and the reply
+//! A request of `Trigger` has no fields, but one byte in their place, so the length shows which of the two it is, and the reply
 //! has the form of the request.
 
 use rustdds::{GUID, SampleIdentity};
@@ -47,7 +47,7 @@ pub(super) struct TriggerResponse {
     pub(super) message: &'static str,
 }
 
-/// To whom a reply goes: a client says by which reader it reads replies, or is known by its writer.
+/// To whom a reply goes: a client names the reader of its replies, or is known by its writer.
 pub(super) fn caller(request: SampleIdentity, related: Option<SampleIdentity>) -> SampleIdentity {
     let reader = related.map(|related| related.writer_guid);
     let known = reader.filter(|&reader| reader != GUID::GUID_UNKNOWN);

@@ -1,6 +1,9 @@
 //! What a robot does, for the tools of ROS 2: `diagnostic_msgs/msg/DiagnosticArray` on `/toposlam/state`.
 
-use std::sync::{Mutex, PoisonError};
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, PoisonError},
+};
 
 use serde::Serialize;
 use toposlam_logs::{
@@ -43,6 +46,8 @@ pub(super) struct RunState {
     pub(super) unexplored: usize,
     /// The part of its charge that a battery has, in hundredths.
     pub(super) battery: Option<u8>,
+    /// The topics of bumpers, cliff sensors and batteries that are published and cannot be read, and why.
+    unread: BTreeMap<&'static str, String>,
 }
 
 impl RunState {
@@ -56,6 +61,7 @@ impl RunState {
             edges: 0,
             unexplored: 0,
             battery: None,
+            unread: BTreeMap::new(),
         }
     }
 
@@ -75,6 +81,14 @@ impl RunState {
         (self.activity, self.has_failed) = (format!("stopped: {hazard}"), true);
     }
 
+    /// Shows why a topic of a sensor is not read; it is if there is no cause.
+    pub(super) fn show_unread(&mut self, topic: &'static str, cause: Option<String>) {
+        match cause {
+            Some(cause) => self.unread.insert(topic, cause),
+            None => self.unread.remove(topic),
+        };
+    }
+
     fn is_battery_low(&self) -> bool {
         self.battery.is_some_and(|charge| charge < LOW_BATTERY)
     }
@@ -82,7 +96,7 @@ impl RunState {
     fn level(&self) -> Level {
         if self.has_failed {
             Level::Error
-        } else if self.is_paused || self.is_battery_low() {
+        } else if self.is_paused || self.is_battery_low() || !self.unread.is_empty() {
             Level::Warn
         } else {
             Level::Ok
@@ -92,7 +106,9 @@ impl RunState {
     fn message(&self) -> String {
         let paused = if self.is_paused { "paused; " } else { "" };
         let low = if self.is_battery_low() { "; the battery is low" } else { "" };
-        format!("{paused}{}{low}", self.activity)
+        let unread =
+            self.unread.iter().map(|(topic, cause)| format!("; {topic} is not read: {cause}"));
+        format!("{paused}{}{low}{}", self.activity, unread.collect::<String>())
     }
 
     /// The numbers, by their names.
@@ -189,6 +205,17 @@ mod tests {
         state.end(&RunEnd { moves: 3, ending: RunEnding::Mapped });
         state.battery = Some(50);
         assert_eq!(state.level(), Level::Ok);
+    }
+
+    #[test]
+    fn a_sensor_that_cannot_be_read_is_a_warning_until_it_can() {
+        let mut state = RunState::new();
+        state.show_unread("/events/cliff", Some("its type is std_msgs/msg/String".to_owned()));
+        assert_eq!(state.level(), Level::Warn);
+        let message = "looking for the first junction; /events/cliff is not read: its type is std_msgs/msg/String";
+        assert_eq!(state.message(), message);
+        state.show_unread("/events/cliff", None);
+        assert_eq!((state.level(), state), (Level::Ok, RunState::new()));
     }
 
     #[test]

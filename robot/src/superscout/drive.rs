@@ -7,6 +7,15 @@ use crate::robot::{RobotError, TimedOdometry};
 
 /// The wheels, their odometry and the sonars of a simulated or a real robot.
 pub trait Base {
+    /// Waits while the run is paused. Whether it was paused since the last call: then the robot stands, and the last
+    /// commands are void. What is decided after it is decided with the newest readings.
+    ///
+    /// # Errors
+    /// Returns an error if the robot must not go on.
+    fn wait_for_pause(&mut self) -> Result<bool, RobotError> {
+        Ok(false)
+    }
+
     /// Turns the wheels for one period of the control loop, and returns the odometry after it.
     ///
     /// # Errors
@@ -26,7 +35,7 @@ pub trait Base {
 
     /// How far the robot may go ahead, in metres: up to the clearance before what its sonars measure.
     fn room(&self) -> f64 {
-        let ahead = (0..SONARS).filter(|&sonar| sonar_direction(sonar).abs() <= WHITHER);
+        let ahead = (0..SONARS).filter(|&sonar| sonar_direction(sonar).abs() <= SONAR_AHEAD);
         ahead.map(|sonar| self.sonar(sonar) - CLEARANCE).fold(f64::INFINITY, f64::min)
     }
 }
@@ -98,9 +107,9 @@ const REST_ANGLE: f64 = 0.01;
 /// at most this many times.
 const RESUMED: u32 = 2;
 /// The part of a heading error that is corrected in one period.
-const MEND: f64 = 0.3;
+const HEADING_GAIN: f64 = 0.3;
 /// Sonars up to this angle from straight ahead look where the robot goes: a little over 45 degrees.
-const WHITHER: f64 = 0.8;
+const SONAR_AHEAD: f64 = 0.8;
 /// A motion may take this many times its expected duration.
 const PATIENCE: f64 = 1.5;
 
@@ -117,6 +126,12 @@ impl<B: Base> Drive<'_, B> {
             let begun = angle - turned;
             let mut sent = SentSpeeds::default();
             for _ in 0..self.periods(begun.abs() / TURN_RATE) {
+                if self.0.wait_for_pause()? {
+                    sent = SentSpeeds::default();
+                    let there = self.0.reading().odometry;
+                    turned += wrapped(there.heading - last.heading);
+                    last = there;
+                }
                 let (now, response) = (self.0.reading().time, self.0.response());
                 let left = angle - turned - sent.coming(now, response.lag);
                 if left.abs() <= NEAR_ANGLE {
@@ -155,6 +170,9 @@ impl<B: Base> Drive<'_, B> {
             let mut turns = SentSpeeds::default();
             let gone = self.0.reading().odometry.distance(&begun);
             for _ in 0..self.periods((distance - gone).max(0.0) / SPEED) {
+                if self.0.wait_for_pause()? {
+                    (sent, turns) = (SentSpeeds::default(), SentSpeeds::default());
+                }
                 let TimedOdometry { time, odometry } = self.0.reading();
                 let response = self.0.response();
                 let left = distance - odometry.distance(&begun);
@@ -165,7 +183,7 @@ impl<B: Base> Drive<'_, B> {
                 let off =
                     wrapped(begun.heading - odometry.heading) - turns.coming(time, response.lag);
                 let speed = response.speed(most, response.acceleration, sent.last()).min(SPEED);
-                let turn = MEND * off / PERIOD;
+                let turn = HEADING_GAIN * off / PERIOD;
                 sent.0.push((time, speed));
                 turns.0.push((time, turn));
                 self.0.drive(WheelSpeeds::from_motion(speed, turn))?;

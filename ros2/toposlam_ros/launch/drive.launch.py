@@ -1,6 +1,6 @@
 """Lets a robot map its building: `ros2 launch toposlam_ros drive.launch.py config:=turtlebot4`.
 
-The program `toposlam` is built with `cargo build --release --features ros2`; `program` says where it is. Ctrl-C stops the
+The program `toposlam` is built with `cargo build --release --features ros2`; `program` is its path. Ctrl-C stops the
 robot and then the program.
 """
 
@@ -16,18 +16,21 @@ ARGUMENTS = {
     "config": ("turtlebot4", "a file of options, or the name of one of this package"),
     "program": ("toposlam", "the program"),
     "namespace": ("", "the namespace of the robot's topics"),
+    "corridors": ("", "true or false, instead of the file: whether the building is a network of corridors"),
     "log": ("run.mcap", "the file for the log of the run"),
     "map": ("map.toml", "the file for the map"),
 }
 
 
-def command(config, program, namespace, log, map_file):
+def command(config, program, namespace, corridors, log, map_file):
     """The command with the options of a file. A list is an option that is repeated."""
     if not os.path.isfile(config):
         folder = get_package_share_directory("toposlam_ros")
         config = os.path.join(folder, "config", config + ".yaml")
     with open(config, encoding="utf-8") as text:
         options = yaml.safe_load(text)["drive"]
+    if corridors:
+        options["corridors"] = yaml.safe_load(corridors)
     words = [program, "drive", "--ros2", "--log", log, "--map", map_file]
     if namespace:
         words += ["--namespace", namespace]

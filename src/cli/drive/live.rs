@@ -78,7 +78,7 @@ impl DriveArguments {
         };
         let logged = self.options.close(log);
         let (seconds, frames) = (robot.odometry().time, robot.frames());
-        // The robot stops before anything else; its topics end before its node.
+        // The robot is dropped last: the node of these topics belongs to it.
         drop(published);
         drop(robot);
         capture.finish()?;
@@ -148,7 +148,13 @@ impl DriveArguments {
         if self.sensor != SensorChoice::Laser {
             return Err(CliError::at("--corridors", "add --sensor laser"));
         }
-        self.laser.params(None).map(Some)
+        let params = self.laser.params(None)?;
+        if params.corner.corners {
+            let cause = "corner.corners is true, but a robot in corridors takes no bend for a vertex; \
+                         set it to false";
+            return Err(CliError::at("--laser-params", cause));
+        }
+        Ok(Some(params))
     }
 
     /// The name of a topic.
