@@ -228,6 +228,7 @@ fn marker_after(
     base.check_clock(topic, stamp)?;
     Ok((base.seconds(stamp) > ended).then_some(marker))
 }
+
 /// Interval of looks at odometry while a marker may come.
 const LOOK: Duration = Duration::from_millis(2);
 /// A marker that was seen with a scan is reported within this time after it, by the clock of the robot.
