@@ -30,7 +30,11 @@ impl RobotCommand {
 impl Stage {
     /// The robot of another program; `None` where it cannot run.
     fn robot(&self, more: &[&str], output: &str) -> Option<Process> {
-        let plan = format!("{}/{PLAN}", env!("CARGO_MANIFEST_DIR"));
+        self.robot_in(PLAN, more, output)
+    }
+
+    fn robot_in(&self, plan: &str, more: &[&str], output: &str) -> Option<Process> {
+        let plan = format!("{}/{plan}", env!("CARGO_MANIFEST_DIR"));
         self.python("robot.py", &[&[plan.as_str()], more].concat(), output)
     }
 
@@ -126,6 +130,32 @@ fn a_robot_of_another_program_maps_its_building_although_messages_fail() {
          print(sum(log.deserialize(raw, c.msgtype) is not None for c, _, raw in log.messages()))";
     let read = Command::new("python3").args(["-c", script, &log]).output().unwrap();
     assert!(stdout(&read).trim().parse::<u32>().unwrap() > 1000, "{}", stderr(&read));
+}
+
+/// Messages are lost, and the robot's computer restarts in the middle.
+#[test]
+fn the_corridors_of_a_real_building_are_mapped_by_a_robot_of_another_program() {
+    let stage = Stage::new("real-corridors");
+    let state = stage.path("state");
+    let robot = ["--corridors", "--speed", FAST, "--scans", "5", "--state", &state];
+    let plan = "worlds/laser/seattle.toml";
+    let faulty = [&robot[..], &["--fault", "lost@50+150"]].concat();
+    let Some(first) = stage.robot_in(plan, &faulty, "first") else { return };
+    stage.ready("first");
+    let drive = stage.drive(&["--corridors", "--patience", "5"]);
+    until("the robot is on its way", 400, || stage.commands("first").len() > 1500);
+    first.signal("-KILL");
+    first.ends();
+    let second = stage.robot_in(plan, &robot, "second").unwrap();
+    let output = drive.ends_within(600);
+    second.signal("-INT");
+    assert!(second.ends_within(20).status.success());
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    let world = "worlds/real/seattle.toml";
+    let compared = stage.out(&["compare", world, &stage.path("map.toml"), "--json"]);
+    assert!(compared.contains("\"isomorphic\":true"), "{compared}");
+    let judged = stage.out(&["conform", &stage.path("run.mcap"), "--world", world]);
+    assert!(judged.contains("conforms"), "{judged}");
 }
 
 /// A run that has a fault, and how it ends.

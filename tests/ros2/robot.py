@@ -64,11 +64,13 @@ RADIUS = 0.2
 TICK = 0.02
 BEGINS = 1000.0
 """The robot's time when it is switched on."""
-RANGE = 20.0
+RANGE = 30.0
 """Of the scanner, in metres."""
 SCANNER = (0.08, -0.03, math.pi / 2)
 """The scanner's pose on the robot: on a plate that is ahead, turned to the left."""
 MARKER_SEEN = (0.2, 1.5)
+MARKER_BEFORE, BEFORE = 1.2, 9.0
+"""How far the marker lies before the first junction of a network of corridors, and where the robot begins."""
 WATCHDOG = 0.6
 """The wheels stop after this time without a command."""
 
@@ -173,9 +175,13 @@ class Robot:
         self.chance = random.Random(options.seed)
         self.noise = np.random.default_rng(options.seed)
         at, facing = (np.array(plan["junctions"][plan["start"][which]]) for which in ("at", "facing"))
-        self.marker = (at, math.atan2(*(facing - at)[::-1]))
+        along = (facing - at) / np.hypot(*(facing - at))
+        self.marker = (at, math.atan2(*along[::-1]))
         self.position = at.astype(float)
         self.heading = self.marker[1] + math.pi
+        if options.corridors:
+            self.marker = (at + MARKER_BEFORE * along, self.marker[1])
+            self.position = at + BEFORE * along
         self.odometry = [0.0, 0.0, 0.0]
         self.speeds = [0.0, 0.0]
         self.wanted = [0.0, 0.0]
@@ -383,6 +389,7 @@ def main() -> None:
     parser.add_argument("--speed", type=float, default=1.0, help="of its time, relative to the real one")
     parser.add_argument("--twist", choices=["Twist", "TwistStamped"], default="TwistStamped")
     parser.add_argument("--namespace", default="")
+    parser.add_argument("--corridors", action="store_true", help="begin in the corridor before the first junction")
     parser.add_argument("--rays", type=int, default=360)
     parser.add_argument("--scans", type=float, default=10.0, help="a second")
     parser.add_argument("--delay", type=float, default=0.04, help="of a command, in seconds")
