@@ -356,7 +356,7 @@ impl<S: Copy + Default> MappedRule<S> {
             _ => seen.as_ref().is_some_and(|seen| seen.doubt.is_some()),
         };
         if is_settled {
-            return seen.filter(|_| !is_possible);
+            return seen;
         }
         let doors: Vec<f64> = seen.iter().flat_map(Estimate::doors).collect();
         let possible = self.possible_junctions.at(stay.centre);
@@ -377,8 +377,8 @@ impl<S: Copy + Default> MappedRule<S> {
             estimate.doubt = Some(UndecidedCause::UnseenArm);
             is_more.then_some(estimate)
         });
-        // Without an arm in doubt a possible junction is no visit of its own.
-        in_doubt.or(seen.filter(|_| !is_possible))
+        // Only a junction, or what may be one, is a visit of its own.
+        in_doubt.or(seen.filter(|seen| !is_possible || seen.is_vertex()))
     }
 
     /// What the views show of a place without the arms in doubt.
@@ -631,6 +631,23 @@ mod tests {
     /// A way from the west to the east through the origin, in steps of half a metre.
     fn eastwards() -> impl Iterator<Item = Point2<f64>> {
         (-24..24).map(|step| Point2::new(0.5 * f64::from(step), 0.0))
+    }
+
+    /// The views of the way to it show that it may be a junction, and some or all of the later ones that it is one.
+    #[test]
+    fn a_junction_that_is_certain_only_once_the_robot_has_left_it_is_visited() {
+        let fork = place(Point2::origin(), 1.0, &[PI, FRAC_PI_2, 0.0]);
+        for every in 1..4 {
+            let views = eastwards().enumerate().map(|(number, robot)| {
+                let is_certain = robot.x > 1.6 && number % every == 0;
+                let (certain, possible) = if is_certain { (1, 0) } else { (0, 1) };
+                (robot, vec![fork.clone(); certain], vec![fork.clone(); possible])
+            });
+            let visits = visits_by(views);
+            let [visit] = &visits[..] else { panic!("{every}: {visits:?}") };
+            let straight_on = Some(VisitPercept { degree: 3, door: Some(2) });
+            assert!(visit.alternatives().contains(&straight_on), "{every}: {visit:?}");
+        }
     }
 
     #[test]
