@@ -274,7 +274,7 @@ mod tests {
         let order = |doors: &[f64], entry| match in_order(doors.to_vec(), entry) {
             Ok(doors) => doors,
             Err(Stop::Failure(CorridorFailure::Undecided)) => Some(Vec::new()),
-            Err(_) => panic!(),
+            Err(Stop::Failure(_) | Stop::Error(_)) => panic!(),
         };
         let doors = [0.1, 1.7, -3.0];
         assert_eq!(order(&doors, -3.1), Some(vec![-3.0, 1.7, 0.1]));
