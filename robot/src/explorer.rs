@@ -14,7 +14,7 @@ use toposlam_model::{
         },
         scene::Scene,
     },
-    mapping::{ArrivalMeasurement, MapWalk, MappedWorld, MappingError, MappingEvent},
+    mapping::{ArrivalMeasurement, MapWalk, MappedWorld, MappingError},
     percept::{Door, Percept},
     world::World,
 };
@@ -29,7 +29,7 @@ use crate::{
 };
 
 pub use error::{CorridorFailure, ExplorerError};
-pub(crate) use mapping_run::MappingRobot;
+pub(crate) use mapping_run::{MappingRobot, RunParts};
 use obstacle::{DEAD_END, Stall, turning_point};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -272,20 +272,12 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 }
 
 impl<R: Robot, S: FrameSensor, O: RunObserver> MappingRobot for RobotExplorer<R, S, O> {
-    fn allowance(&mut self) -> &mut Allowance {
-        &mut self.allowance
-    }
+    type Robot = R;
+    type Observer = O;
 
-    fn moves_made(&self) -> [u64; 2] {
-        [self.last_move, self.moves]
-    }
-
-    fn report(&mut self, journey: &MapWalk, event: MappingEvent) {
-        self.log.mapping(&self.robot, journey, event);
-    }
-
-    fn emit(&mut self, kind: EventKind) {
-        self.log.emit(&self.robot, kind);
+    fn parts(&mut self) -> RunParts<'_, R, O> {
+        let Self { robot, log, allowance, last_move, moves, .. } = self;
+        RunParts { robot, log, allowance, last_move: *last_move, moves: *moves }
     }
 }
 

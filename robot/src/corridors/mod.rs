@@ -21,7 +21,7 @@ use toposlam_model::{
         odometry::Odometry,
         scene::{MarkerView, wrapped},
     },
-    mapping::{MapWalk, MappedWorld, MappingError, MappingEvent, Relocate},
+    mapping::{MapWalk, MappedWorld, MappingError, Relocate},
     percept::{Door, Percept, Sighting},
     world::World,
 };
@@ -36,7 +36,7 @@ use crate::{
     budget::{Allowance, Spent},
     capture::{RETAKES, UnusableFrame, capture},
     event_log::EventLog,
-    explorer::{CorridorFailure, ExplorerError, MappingRobot},
+    explorer::{CorridorFailure, ExplorerError, MappingRobot, RunParts},
     robot::{Robot, RobotError},
     run_settings::RunSettings,
 };
@@ -365,20 +365,12 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 }
 
 impl<R: Robot, O: RunObserver> MappingRobot for CorridorExplorer<R, O> {
-    fn allowance(&mut self) -> &mut Allowance {
-        &mut self.allowance
-    }
+    type Robot = R;
+    type Observer = O;
 
-    fn moves_made(&self) -> [u64; 2] {
-        [self.last_move, self.moves]
-    }
-
-    fn report(&mut self, journey: &MapWalk, event: MappingEvent) {
-        self.log.mapping(&self.robot, journey, event);
-    }
-
-    fn emit(&mut self, kind: EventKind) {
-        self.log.emit(&self.robot, kind);
+    fn parts(&mut self) -> RunParts<'_, R, O> {
+        let Self { robot, log, allowance, last_move, moves, .. } = self;
+        RunParts { robot, log, allowance, last_move: *last_move, moves: *moves }
     }
 }
 

@@ -1,25 +1,38 @@
 //! A whole run of a robot: the mapping algorithm, its events, and the way back to the marker.
 
-use toposlam_logs::record::{EventKind, RunEnd, RunEnding};
+use toposlam_logs::record::{EventKind, RunEnd, RunEnding, RunObserver};
 use toposlam_model::mapping::{MapWalk, MappedWorld, MappingError, MappingEvent, Relocate};
 
 use super::ExplorerError;
 use crate::{
     budget::{Allowance, BudgetLimit},
+    event_log::EventLog,
+    robot::Robot,
     run_settings::RunSettings,
 };
 
+/// What a whole run needs of an explorer.
+pub(crate) struct RunParts<'r, R, O> {
+    pub(crate) robot: &'r R,
+    pub(crate) log: &'r mut EventLog<O>,
+    pub(crate) allowance: &'r mut Allowance,
+    /// The number of doors taken, and of moves that ended at a junction or before an obstacle.
+    pub(crate) last_move: u64,
+    pub(crate) moves: u64,
+}
+
 /// A robot that maps a building within a budget.
 pub(crate) trait MappingRobot: Relocate<Error = ExplorerError> + Sized {
-    fn allowance(&mut self) -> &mut Allowance;
+    type Robot: Robot;
+    type Observer: RunObserver;
 
-    /// The number of doors taken, and of moves that ended at a junction or before an obstacle.
-    fn moves_made(&self) -> [u64; 2];
+    fn parts(&mut self) -> RunParts<'_, Self::Robot, Self::Observer>;
 
-    /// Reports a step of the algorithm.
-    fn report(&mut self, journey: &MapWalk, event: MappingEvent);
-
-    fn emit(&mut self, kind: EventKind);
+    /// Reports an event that happens now.
+    fn emit(&mut self, kind: EventKind) {
+        let RunParts { robot, log, .. } = self.parts();
+        log.emit(robot, kind);
+    }
 
     /// Maps the building. Returns the state of the algorithm, too.
     ///
@@ -30,9 +43,10 @@ pub(crate) trait MappingRobot: Relocate<Error = ExplorerError> + Sized {
         settings: &RunSettings,
     ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
         let RunSettings { method, dart_bound, budget, ref earlier, .. } = *settings;
-        *self.allowance() = Allowance::new(budget);
+        *self.parts().allowance = Allowance::new(budget);
         let mut observer = |robot: &mut Self, journey: &MapWalk, event: MappingEvent| {
-            robot.report(journey, event);
+            let RunParts { robot, log, .. } = robot.parts();
+            log.mapping(robot, journey, event);
         };
         let (run, mut mapped) = method.map_world(self, dart_bound, earlier, &mut observer);
         if let Err(MappingError::World(ExplorerError::Budget { limit, .. })) = mapped {
@@ -46,15 +60,15 @@ pub(crate) trait MappingRobot: Relocate<Error = ExplorerError> + Sized {
             }
             Err(error) => RunEnding::GaveUp(error.to_string()),
         };
-        let [_, moves] = self.moves_made();
+        let moves = self.parts().moves;
         self.emit(EventKind::End(RunEnd { moves, ending }));
         (run, mapped)
     }
 
     /// Returns to the marker, and returns the reason.
     fn return_to_marker(&mut self, limit: BudgetLimit) -> ExplorerError {
-        self.allowance().begin_return();
-        while let Some(door) = self.allowance().door_back() {
+        self.parts().allowance.begin_return();
+        while let Some(door) = self.parts().allowance.door_back() {
             match self.traverse(door) {
                 Ok(()) => {}
                 Err(error @ (ExplorerError::Stopped { .. } | ExplorerError::Robot(_))) => {
@@ -63,7 +77,8 @@ pub(crate) trait MappingRobot: Relocate<Error = ExplorerError> + Sized {
                 Err(_) => break,
             }
         }
-        let ([moves, _], is_at_marker) = (self.moves_made(), self.allowance().is_at_marker());
+        let RunParts { allowance, last_move: moves, .. } = self.parts();
+        let is_at_marker = allowance.is_at_marker();
         ExplorerError::Budget { moves, limit, is_at_marker }
     }
 }

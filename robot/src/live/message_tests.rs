@@ -66,7 +66,11 @@ impl Topics {
 
     /// What a robot sends that stands 3 m from everything.
     fn send_all(&self, now: Nanoseconds) {
-        self.send_odometry(now, 0.0);
+        self.send_all_at(now, 0.0);
+    }
+
+    fn send_all_at(&self, now: Nanoseconds, x: f64) {
+        self.send_odometry(now, x);
         self.send_scan(now, 3.0);
     }
 }
@@ -273,21 +277,12 @@ fn with_a_second_source_of_a_topic_the_wheels_are_stopped() {
 #[test]
 fn odometry_that_jumps_ends_a_motion_and_stops_the_wheels() {
     let (mut robot, driver) = Driver::after(Topics::send_all);
-    driver
-        .next
-        .send(|topics, now| {
-            topics.send_odometry(now, 7.0);
-            topics.send_scan(now, 3.0);
-        })
-        .unwrap();
+    driver.next.send(|topics, now| topics.send_all_at(now, 7.0)).unwrap();
     let error = robot.forward(0.5).unwrap_err();
     assert!(matches!(error, RobotError::OdometryJumped { metres, .. } if metres > 6.9), "{error}");
     assert_eq!(driver.wheels.last(), Some(WheelSpeeds::STOP));
     // While it stands, too.
-    let error = capture_error(|topics, now| {
-        topics.send_odometry(now, -7.0);
-        topics.send_scan(now, 3.0);
-    });
+    let error = capture_error(|topics, now| topics.send_all_at(now, -7.0));
     assert!(matches!(error, RobotError::OdometryJumped { .. }), "{error}");
 }
 
@@ -297,13 +292,7 @@ fn odometry_goes_on_after_a_gap_where_the_robot_can_be() {
     let (mut robot, driver) = Driver::after(Topics::send_all);
     driver.next.send(|_, _| {}).unwrap();
     thread::sleep(PATIENCE / 2);
-    driver
-        .next
-        .send(|topics, now| {
-            topics.send_odometry(now, 0.15);
-            topics.send_scan(now, 3.0);
-        })
-        .unwrap();
+    driver.next.send(|topics, now| topics.send_all_at(now, 0.15)).unwrap();
     thread::sleep(2 * INTERVAL);
     robot.capture().unwrap();
     assert_eq!(robot.odometry().odometry.position, [0.15, 0.0]);

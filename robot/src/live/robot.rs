@@ -134,7 +134,7 @@ impl LiveRobot {
                 let check_clock = |topic: &str, stamp| base.check_clock(topic, stamp);
                 let scanned = scanner.wait(patience, stop, check_clock, &mut is_fresh);
                 scanned.and_then(|(frame, scan)| {
-                    let marker = seen_marker(base, markers, asked, [ended, frame.taken])?;
+                    let marker = seen_marker(base, markers, asked, ended, frame.taken)?;
                     Ok(Frame { scan: Some(scan), marker, ..frame })
                 })
             }
@@ -179,7 +179,8 @@ fn seen_marker(
     base: &LiveBase,
     markers: &Subscription<Stamped<MarkerReading>>,
     asked: Instant,
-    [ended, taken]: [f64; 2],
+    ended: f64,
+    taken: f64,
 ) -> Result<Option<MarkerView>, RobotError> {
     let until = Instant::now() + MARKER_DELAY;
     let mut fault = None;

@@ -5,7 +5,7 @@ use nalgebra::{Point2, Vector2};
 use toposlam_model::driving::scene::wrapped;
 
 use super::{
-    ends::WayEnd,
+    ends::{End, WayEnd},
     grid::Cell,
     local_map::LocalMap,
     way_graph::{Way, WayNode},
@@ -32,6 +32,16 @@ pub enum LineEnd {
     /// The way goes on, or nothing was seen there yet.
     #[default]
     Unknown,
+}
+
+impl LineEnd {
+    /// What is at the end of a way. One that was not seen to end on all sides may go on.
+    fn of(node: &WayNode) -> Self {
+        match node.end {
+            Some(End { kind: WayEnd::Closed, .. }) => Self::Wall(node.clearance),
+            Some(End { kind: WayEnd::Open | WayEnd::Unclear, .. }) | None => Self::Unknown,
+        }
+    }
 }
 
 /// Which way a robot takes.
@@ -86,11 +96,7 @@ impl LocalMap {
             let at = along(&line, choice.measured)?;
             let is_step = distance(line[0], at) > self.cell();
             let turn = wrapped(direction(from, at) - choice.towards).abs();
-            let WayNode { clearance, end, .. } = self.ways.nodes[node];
-            let end = match end {
-                Some(end) if end.kind != WayEnd::Open => LineEnd::Wall(clearance),
-                _ => LineEnd::Unknown,
-            };
+            let end = LineEnd::of(&self.ways.nodes[node]);
             (is_step && turn <= choice.aside)
                 .then_some((turn + BESIDE_COST * beside, WayAhead { line, end }))
         };
@@ -318,6 +324,18 @@ mod tests {
         assert!(
             map.has_space_at([30.0, 2.5].into(), 0.9) && !map.has_space_at([30.0, 3.3].into(), 0.9)
         );
+    }
+
+    #[test]
+    fn only_a_way_that_was_seen_to_end_on_all_sides_ends_at_a_wall() {
+        let of = |kind: Option<WayEnd>| {
+            let end = kind.map(|kind| End { cell: 0, kind, gap: 1.0, beyond: 0.0 });
+            LineEnd::of(&WayNode { point: Point2::origin(), clearance: 0.9, end })
+        };
+        assert_eq!(of(Some(WayEnd::Closed)), LineEnd::Wall(0.9));
+        for kind in [Some(WayEnd::Open), Some(WayEnd::Unclear), None] {
+            assert_eq!(of(kind), LineEnd::Unknown, "{kind:?}");
+        }
     }
 
     #[test]
