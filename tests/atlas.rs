@@ -5,16 +5,16 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 use toposlam_model::{
+    aid::{AidKind, FEW_STATES},
     enumerate::Class,
     format::world_file,
-    marker::{MARKERS, Marker},
 };
 use toposlam_proofs::marker_theorems::about;
 
 use crate::{output::names_in, printed, program, read, repository};
 
 /// A cell of the atlas's table, without its links.
-fn cell(table: &str, marker: &dyn Marker, class: Class) -> String {
+fn cell(table: &str, marker: AidKind, class: Class) -> String {
     let start = format!("| {} |", marker.name());
     let row = table.lines().find(|line| line.starts_with(&start)).unwrap();
     let column = Class::ALL.iter().position(|&known| known == class).unwrap();
@@ -35,7 +35,7 @@ fn the_atlas_contains_what_the_search_finds() {
         (Class::Planar, 8, 10),
     ] {
         assert!(table.contains(&format!("{class} {whole}")), "{class}");
-        for marker in MARKERS {
+        for &marker in FEW_STATES {
             let (name, class_name) = (marker.name(), class.name());
             let search = format!("counterexample --json --class {class_name} --marker {name}");
             let search = format!("{search} --max-edges {edges}");

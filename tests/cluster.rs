@@ -20,6 +20,7 @@ use std::{
 
 use output::{Schema, json_lines, stderr, stdout};
 use process::{Process, until};
+use toposlam_model::counts::grouped;
 
 /// How a process ended, what it printed, and its messages.
 type Ended = (Option<i32>, String, String);
@@ -195,7 +196,7 @@ fn a_check_goes_on_with_two_processes_after_one_of_three_was_killed() {
     stage.use_processes(2);
     let (code, out, error) = &stage.run(&command)[0];
     assert_eq!(*code, Some(0), "{error}");
-    let finished = format!("{} units of the work finished before", before - 1);
+    let finished = format!("{} units of the work finished before", grouped(before as u128 - 1));
     assert!(error.contains(&finished), "{before}: {error}");
     let one = alone(&format!("{LONG} --json")).1;
     assert_eq!(lines_of(out, "size"), lines_of(&one, "size"));

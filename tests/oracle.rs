@@ -1,11 +1,18 @@
 //! The algorithms and the search for indistinguishable worlds, compared with second implementations in
 //! Python. The Python code shares no code with the Rust code, only the paper and descriptions.
 
-use std::{collections::HashMap, process::Command};
+use std::{
+    cmp::Reverse,
+    collections::{BTreeMap, HashMap},
+    process::Command,
+};
 
 use serde_json::{Value, json};
 use toposlam_model::{
+    aid::{AIDS, FEW_STATES},
+    ambiguity::Comparison,
     embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Each, Enumeration},
     folding::{FoldedTrail, certificate_length, fold},
     format::world_file,
     percept::{Door, Percept, Sighting},
@@ -134,8 +141,9 @@ fn no_walk_that_determines_its_world_is_shorter_than_the_certificate() {
 
 /// The output of `counterexample` in the format of the oracle: `KIND m placed_worlds ambiguous` and
 /// `KIND smallest M K`.
-fn counterexamples(class: &str, edges: &str) -> String {
-    let lines = objects(&format!("counterexample --class {class} --max-edges {edges}"));
+fn counterexamples(class: &str, edges: &str, aids: &[&str]) -> String {
+    let aids: String = aids.iter().map(|aid| format!(" --aid {aid}")).collect();
+    let lines = objects(&format!("counterexample --class {class} --max-edges {edges}{aids}"));
     let found = lines.iter().map(|line| {
         let marker = line["marker"].as_str().unwrap();
         let found = match line["smallest"]["worlds"].as_array() {
@@ -160,6 +168,60 @@ fn the_same_worlds_are_counted_and_indistinguishable() {
     {
         let Some(oracle) = oracle(&format!("ambiguity.py {class} {edges}")) else { return };
         assert!(oracle.lines().count() > 8 * 4);
-        assert_eq!(counterexamples(class, edges), oracle, "{class}");
+        assert_eq!(counterexamples(class, edges, &[]), oracle, "{class}");
     }
+}
+
+/// The names of the aids that move, but for the one marker that is among those above.
+fn moving_aids() -> Vec<&'static str> {
+    AIDS[FEW_STATES.len()..].iter().map(|aid| aid.name()).collect()
+}
+
+#[test]
+fn with_aids_that_move_the_same_worlds_are_counted_and_indistinguishable() {
+    let aids = moving_aids();
+    for (class, edges) in [("multigraph", "3"), ("simple", "4"), ("corridor", "5")] {
+        let command = format!("ambiguity.py {class} {edges} {}", aids.join(" "));
+        let Some(oracle) = oracle(&command) else { return };
+        assert_eq!(counterexamples(class, edges, &aids), oracle, "{class}");
+    }
+}
+
+#[test]
+fn with_every_aid_the_shortest_walks_are_as_long() {
+    walks_are_as_long(Class::Multigraph, 2);
+    walks_are_as_long(Class::Simple, 4);
+}
+
+#[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
+fn with_every_aid_the_shortest_walks_in_more_worlds_are_as_long() {
+    walks_are_as_long(Class::Multigraph, 3);
+}
+
+/// For each aid, the lengths of the shortest walks that distinguish two starts, of all pairs.
+fn walks_are_as_long(class: Class, edges: usize) {
+    let starts: Vec<EmbeddedGraph> = (1..=edges)
+        .flat_map(|edges| Enumeration::new(Each::Start, class, edges).unwrap().graphs())
+        .collect();
+    let mut found = String::new();
+    for aid in AIDS {
+        let mut lengths: BTreeMap<Option<Reverse<usize>>, usize> = BTreeMap::new();
+        for (at, one) in starts.iter().enumerate() {
+            for other in &starts[..at] {
+                let comparison = Comparison::new(aid, (one, Dart(0)), (other, Dart(0)));
+                let walk = comparison.walk([Dart(0); 2]);
+                *lengths.entry(walk.map(|walk| Reverse(walk.actions.len()))).or_default() += 1;
+            }
+        }
+        for (length, count) in lengths.iter().rev() {
+            let length = length.map_or("never".to_owned(), |Reverse(length)| length.to_string());
+            found += &format!("{} {length} {count}\n", aid.name());
+        }
+    }
+    let names = AIDS.map(|aid| aid.name()).join(" ");
+    let Some(oracle) = oracle(&format!("ambiguity.py --walks {class} {edges} {names}")) else {
+        return;
+    };
+    assert_eq!(found, oracle, "{class}");
 }

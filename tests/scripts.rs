@@ -6,6 +6,7 @@ use std::{borrow::Cow, fmt::Write as _, fs};
 
 use serde_json::{Value, json};
 use toposlam_model::{
+    aid::{Action, Aid, AidKind, FEW_STATES, State},
     ambiguity::{Bisimulation, Comparison},
     check::judge_map,
     embedded_graph::{Dart, EmbeddedGraph},
@@ -13,9 +14,9 @@ use toposlam_model::{
     folding::fold,
     isomorphism::{Candidate, as_discovered},
     mapping::{ExploredMap, Flaw},
-    marker::{Directional, MARKERS, Marker},
+    marker::Directional,
     percept::{Door, Percept},
-    world::{Action, GraphWorld},
+    world::GraphWorld,
 };
 
 use crate::{browser, output, repository};
@@ -58,12 +59,12 @@ struct Walk {
 
 impl Walk {
     /// Random actions; the same random numbers for the same seed.
-    fn random(graph: &EmbeddedGraph, marker: &dyn Marker, length: usize, seed: &mut u32) -> Self {
-        let mut world = GraphWorld::with_marker(graph, marker, Dart(0));
+    fn random(graph: &EmbeddedGraph, marker: AidKind, length: usize, seed: &mut u32) -> Self {
+        let mut world = GraphWorld::with_aid(graph, marker, Dart(0));
         let mut walk = Self { percepts: vec![world.sensed()], actions: Vec::new() };
         for _ in 0..length {
             *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            let possible: Vec<_> = world.actions().collect();
+            let possible = world.actions();
             let action = possible[(*seed >> 16) as usize % possible.len()];
             world.act(action).unwrap();
             walk.actions.push(action);
@@ -73,8 +74,8 @@ impl Walk {
     }
 
     /// Whether a robot perceives the same from the start of a world.
-    fn is_explained_by(&self, graph: &EmbeddedGraph, marker: &dyn Marker) -> bool {
-        let mut world = GraphWorld::with_marker(graph, marker, Dart(0));
+    fn is_explained_by(&self, graph: &EmbeddedGraph, marker: AidKind) -> bool {
+        let mut world = GraphWorld::with_aid(graph, marker, Dart(0));
         world.sensed() == self.percepts[0]
             && self
                 .actions
@@ -138,7 +139,7 @@ fn the_folded_trails_of_the_game_have_the_same_open_doors() {
     let (mut cases, mut expected, mut seed) = (Vec::new(), Vec::new(), 1);
     for graph in starts(1..=3) {
         for length in 1..=9 {
-            let walk = Walk::random(&graph, &Directional, length, &mut seed);
+            let walk = Walk::random(&graph, Directional.into(), length, &mut seed);
             let open = fold(&walk.percepts, &walk.doors()).unwrap().open_darts().count();
             let [percepts, actions] = walk.json();
             cases.push(json!({ "rule": "fold", "percepts": percepts, "actions": actions }));
@@ -155,9 +156,13 @@ fn the_folded_trails_of_the_game_have_the_same_open_doors() {
 fn the_sightings_of_each_marker_are_those_of_the_specification() {
     let (mut cases, mut expected) = (Vec::new(), Vec::new());
     for graph in starts(1..=4) {
-        for marker in MARKERS {
+        for &marker in FEW_STATES {
             for placed in graph.darts().step_by(3) {
-                let sighting = |pose| json!(marker.sighting(&graph, placed, pose));
+                let placed_by = marker.placed(&graph, placed);
+                let sighting = |pose| {
+                    let state = State { pose, placed: placed_by.clone() };
+                    json!(marker.sighting(&graph, &state))
+                };
                 expected.push(graph.darts().map(sighting).collect::<Value>().to_string());
                 cases.push(json!({
                     "rule": "sightings", "marker": marker.name(),
@@ -176,7 +181,7 @@ fn the_comparisons_of_the_pages_are_those_of_the_specification() {
     let some = starts(3..=3).into_iter().step_by(9);
     let worlds: Vec<_> = starts(1..=2).into_iter().chain(some).collect();
     let (mut cases, mut expected, mut apart) = (Vec::new(), Vec::new(), 0);
-    for marker in MARKERS {
+    for &marker in FEW_STATES {
         for (number, one) in worlds.iter().enumerate() {
             for other in &worlds[number..] {
                 let facing = Dart(number as u32 % other.dart_count() as u32);
@@ -221,7 +226,7 @@ const TRIED: usize = 4;
 fn the_other_world_of_the_game_is_as_small_as_trying_all_finds() {
     let all = starts(1..=TRIED);
     let (mut cases, mut walks, mut seed) = (Vec::new(), Vec::new(), 7);
-    for marker in MARKERS {
+    for &marker in FEW_STATES {
         for truth in starts(1..=3) {
             for length in [1, 3, 6, 10, 20] {
                 let walk = Walk::random(&truth, marker, length, &mut seed);

@@ -55,7 +55,7 @@ fn in_known_world(plan: &FloorPlan) -> ConformConfig {
     let states = anywhere(&graph, &Directional);
     ConformConfig {
         world: Some(KnownWorld { graph, states }),
-        marker: &Directional,
+        marker: Directional,
         driver: RunDriver::from(MappingAlgorithm::Algorithm1),
         budget: RunBudget::default(),
         search: SEARCH,

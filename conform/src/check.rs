@@ -12,7 +12,7 @@ use toposlam_model::{
     folding::WorldSearch,
     format::named_world::{NamedWorld, StartError},
     mapping::MappingAlgorithm,
-    marker::{Directional, Marker, NoMarker, UnknownMarker},
+    marker::{Directional, MarkerKind, NoMarker, UnknownMarker},
 };
 use toposlam_robot::run_settings::RecordedSettings;
 use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
@@ -48,7 +48,7 @@ pub struct LogCheck<'w> {
     pub world: Option<&'w NamedWorld>,
     pub start: RobotStart<'w>,
     /// The robot's marker; without one, that of the log, or else a directional one.
-    pub marker: Option<&'static dyn Marker>,
+    pub marker: Option<MarkerKind>,
     /// Whether a marker is assumed that is not in the log: at the place of the topic map, or else at the first
     /// junction.
     pub assumes_marker: bool,
@@ -168,7 +168,7 @@ impl LogCheck<'_> {
             search: self.search,
             dart_bound: self.max_darts.unwrap_or(settings.dart_bound),
         };
-        let marked = marker.name() != NoMarker.name();
+        let marked = marker != NoMarker;
         // Whether a corridor bends enough for a corner does not show by driving there.
         let driven = config.world.is_some() && !self.laser.corner.corners;
         let extraction =
@@ -225,7 +225,7 @@ impl LogCheck<'_> {
     /// The known world with the robot's start, and as it is compared.
     fn known(
         &self,
-        marker: (&'static dyn Marker, MarkerStart),
+        marker: (MarkerKind, MarkerStart),
         head: LogHead,
         algorithm: MappingAlgorithm,
     ) -> Result<Option<(Known, KnownWorld)>, CheckError> {
@@ -264,7 +264,7 @@ impl LogCheck<'_> {
         &self,
         topics: &TopicMap,
         extracted: &mut ExtractedRun,
-        marker: &dyn Marker,
+        marker: MarkerKind,
     ) -> Result<Option<AddedMarker>, CheckError> {
         let ExtractedRun { events, junctions, sightings, .. } = extracted;
         let events = &mut events.events;
@@ -275,14 +275,14 @@ impl LogCheck<'_> {
             let seen = assume_marker(events, junctions, marker, place)
                 .map_err(MarkerPlaceError::Assumed)?;
             // The direction of an undirected marker does not matter.
-            let heading = place.heading.filter(|_| marker.name() == Directional.name());
+            let heading = place.heading.filter(|_| marker == Directional);
             let MarkerPlace { position, .. } = place;
             return Ok(Some(AddedMarker::Assumed { position, heading, seen }));
         }
         if topics.carrier(Role::Marker).is_none() {
             return Ok(None);
         }
-        if marker.name() == NoMarker.name() {
+        if marker == NoMarker {
             return Err(MarkerPlaceError::SightingsWithoutMarker.into());
         }
         let elsewhere =

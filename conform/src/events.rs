@@ -5,7 +5,7 @@ use thiserror::Error;
 use toposlam_logs::record::{Arrival, EventId, MapRecord, RunEnd};
 use toposlam_model::{
     mapping::ArrivalMeasurement,
-    marker::{Directional, Marker, NoMarker, Undirected},
+    marker::{Directional, MarkerKind, NoMarker, Undirected},
     measurement::{HallwayMeasurement, MeasurementNoise},
     percept::{Door, Percept, Sighting},
     trace::{RecordedVisit, Trace, TraceEvent, TraceEventKind, TraceOrderError},
@@ -145,10 +145,9 @@ impl RunEvents {
 
     /// Completes the arrivals that do not record whether the marker was seen: without a marker, none was. A door
     /// along which an undirected marker points is left out.
-    pub(crate) fn complete_sightings(&mut self, marker: &dyn Marker) -> Result<(), SightingError> {
-        let is = |other: &dyn Marker| marker.name() == other.name();
+    pub(crate) fn complete_sightings(&mut self, marker: MarkerKind) -> Result<(), SightingError> {
         let [is_none, is_directional, is_undirected] =
-            [is(&NoMarker), is(&Directional), is(&Undirected)];
+            [NoMarker, Directional, Undirected].map(|kind| marker == kind);
         for arrival in self.arrivals_mut() {
             match arrival.sighting {
                 None if is_none => arrival.sighting = Some(Sighting::Nothing),

@@ -20,7 +20,7 @@ use toposlam_model::{
     enumerate::Class,
     folding::WorldSearch,
     mapping::MappingAlgorithm,
-    marker::{Directional, Marker, NoMarker},
+    marker::{Directional, MarkerKind, NoMarker},
 };
 use toposlam_robot::budget::RunBudget;
 
@@ -134,7 +134,7 @@ fn judge_run(log: &Log, mapping: &TopicMap) {
         Ok(run) => run,
         Err(error) => return assert_is_a_message(&error),
     };
-    let by = |driver: RunDriver, marker: &'static dyn Marker| ConformConfig {
+    let by = |driver: RunDriver, marker: MarkerKind| ConformConfig {
         world: None,
         marker,
         driver,
@@ -143,9 +143,9 @@ fn judge_run(log: &Log, mapping: &TopicMap) {
         dart_bound: 50,
     };
     for config in [
-        by(MappingAlgorithm::Algorithm1.into(), &Directional),
-        by(MappingAlgorithm::Folding.into(), &Directional),
-        by(RunDriver::Anyone, &NoMarker),
+        by(MappingAlgorithm::Algorithm1.into(), Directional),
+        by(MappingAlgorithm::Folding.into(), Directional),
+        by(RunDriver::Anyone, NoMarker),
     ] {
         match judge(events.clone(), &config, &Quirks::default(), &()) {
             Ok(judgement) => {

@@ -5,7 +5,7 @@ use thiserror::Error;
 use toposlam_model::{
     enumerate::Class,
     folding::{ContradictionReason, FoldError, FoldedTrail, TrailError, fold},
-    marker::{Directional, Marker, NoMarker, Undirected},
+    marker::{Directional, MarkerKind, NoMarker, Undirected},
     percept::{Percept, Sighting, WalkEvent},
     trace::Trace,
 };
@@ -67,9 +67,8 @@ impl FoldedTrace {
     ///
     /// Whether some world of the class explains the trace is exact, except that of a planar world only the
     /// degrees and the edges are compared here.
-    pub(crate) fn new(trace: &Trace, marker: &dyn Marker, class: Class) -> Self {
-        let kinds: [&dyn Marker; 3] = [&Directional, &Undirected, &NoMarker];
-        if kinds.iter().all(|kind| kind.name() != marker.name()) {
+    pub(crate) fn new(trace: &Trace, marker: MarkerKind, class: Class) -> Self {
+        if ![Directional, Undirected, NoMarker].contains(&marker) {
             return Self { trail: None, impossible: None };
         }
         let folded = trace.before_relocation();
@@ -84,7 +83,7 @@ impl FoldedTrace {
             let moves = trace.percepts().iter().position(is)?;
             Some((WalkEvent::Percept(moves).index(), why))
         };
-        let is_unmarked = marker.name() == NoMarker.name();
+        let is_unmarked = marker == NoMarker;
         let marked = |percept: &Percept| is_unmarked && percept.sighting != Sighting::Nothing;
         let crowded = |percept: &Percept| percept.degree > class.max_degree();
         let marked = first(&marked, Impossibility::Marker);

@@ -11,7 +11,7 @@ use toposlam_model::{
     enumerate::Watch,
     folding::{FoldedTrail, MarkedTrails, SearchLimit, SmallestWorld, smallest_world},
     mapping::MappingAlgorithm,
-    marker::{Directional, Marker, Undirected},
+    marker::{Directional, Undirected},
     percept::{Percept, Sighting},
     trace::{
         AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceEventKind, TraceOrderError,
@@ -288,7 +288,7 @@ impl Judgement {
             FoldedTrace::new(&self.trace, config.marker, config.search.class);
         self.determined = trail.as_ref().map(|trail| trail.open_count() == 0);
         self.trail = trail;
-        if config.marker.name() == Undirected.name() {
+        if config.marker == Undirected {
             let elsewhere = self.unite_marked(watch);
             impossible =
                 [impossible, elsewhere].into_iter().flatten().min_by_key(|(event, _)| *event);

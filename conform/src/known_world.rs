@@ -2,18 +2,19 @@
 //! class of a percept that does not fit it.
 
 use toposlam_model::{
+    aid::State,
     driving::visit::JunctionShape,
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
     isomorphism::code,
     mapping::{FACING, MapWalk, MappingAlgorithm, MappingEvent, Observer},
-    marker::Marker,
+    marker::{Marker, MarkerKind},
     percept::{Percept, WalkEvent},
     trace::{
         self, AlgorithmCase, AlgorithmCoverage, Misfit, MisfitReason, Trace, TraceEventKind,
         anywhere, poses,
     },
-    world::{GraphWorld, State},
+    world::GraphWorld,
 };
 
 use super::divergence::FaultClass;
@@ -47,14 +48,14 @@ impl Known {
     pub(super) fn new(
         world: NamedWorld,
         start: Option<Dart>,
-        (marker, lies): (&'static dyn Marker, MarkerStart),
+        (marker, lies): (MarkerKind, MarkerStart),
         algorithm: MappingAlgorithm,
     ) -> Option<(Self, KnownWorld)> {
         let graph = &world.graph;
         let states = match (lies, start) {
             (MarkerStart::Robot, None) => anywhere(graph, &marker),
             (MarkerStart::Robot, Some(facing)) => {
-                vec![GraphWorld::with_marker(graph, marker, facing).state()]
+                vec![GraphWorld::with_aid(graph, marker, facing).state()]
             }
             (MarkerStart::Anywhere, start) => {
                 let places = graph.darts().filter(|&dart| marker.first_alike(graph, dart) == dart);
@@ -64,8 +65,7 @@ impl Known {
                 if poses.len().saturating_mul(places.len()) > MOST_STATES {
                     return None;
                 }
-                let with =
-                    |placed| poses.iter().map(move |&pose| State { pose, placed: Some(placed) });
+                let with = |placed| poses.iter().map(move |&pose| State { pose, placed });
                 places.into_iter().flat_map(with).collect()
             }
         };
@@ -132,12 +132,7 @@ pub struct KnownWorld {
 impl KnownWorld {
     /// The fault class of a misfit. It is motion if the following events fit better from another pose than
     /// after one wrong percept.
-    pub(super) fn fault(
-        &self,
-        trace: &Trace,
-        misfit: &Misfit,
-        marker: &'static dyn Marker,
-    ) -> FaultClass {
+    pub(super) fn fault(&self, trace: &Trace, misfit: &Misfit, marker: MarkerKind) -> FaultClass {
         let TraceEventKind::Percept(perceived) = misfit.event.kind else {
             return FaultClass::Algorithm;
         };
@@ -155,14 +150,14 @@ impl KnownWorld {
     }
 
     /// The number of events that fit.
-    fn fitting(&self, trace: &Trace, states: &[State], marker: &'static dyn Marker) -> usize {
+    fn fitting(&self, trace: &Trace, states: &[State], marker: MarkerKind) -> usize {
         poses(&self.graph, &marker, states, trace).left.len()
     }
 
     /// Whether a map is this world from one of its starts.
     pub(super) fn has(&self, map: &EmbeddedGraph) -> bool {
         let of_map = code(map, FACING);
-        let is = |state: &State| state.placed.is_some_and(|dart| code(&self.graph, dart) == of_map);
+        let is = |state: &State| code(&self.graph, state.placed) == of_map;
         self.states.iter().any(is)
     }
 }

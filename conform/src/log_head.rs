@@ -7,7 +7,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
-    marker::{self, Directional, Marker, UnknownMarker},
+    marker::{self, Directional, MarkerKind, UnknownMarker},
 };
 use toposlam_robot::run_settings::RecordedSettings;
 
@@ -30,8 +30,8 @@ impl<'r> LogHead<'r> {
     }
 
     /// The marker of the robot: without a record, a directional one.
-    pub(crate) fn marker(self) -> Result<&'static dyn Marker, UnknownMarker> {
-        self.marker_name().map_or(Ok(&Directional), marker::named)
+    pub(crate) fn marker(self) -> Result<MarkerKind, UnknownMarker> {
+        self.marker_name().map_or(Ok(Directional), marker::named)
     }
 
     /// How the robot mapped, and within which limits, by this algorithm if one is given; without either by

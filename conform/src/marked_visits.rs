@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use thiserror::Error;
 use toposlam_logs::{fiducials::FiducialSighting, topic_map::MarkerPlace};
 use toposlam_model::{
-    marker::{Directional, Marker, Undirected},
+    marker::{Directional, MarkerKind, Undirected},
     percept::{Door, Sighting},
 };
 use toposlam_vision::{
@@ -91,7 +91,7 @@ pub fn marker_at_start(junctions: &[VisitedJunction]) -> Option<MarkerPlace> {
 pub fn assume_marker(
     events: &mut [CheckedEvent],
     junctions: &[VisitedJunction],
-    marker: &dyn Marker,
+    marker: MarkerKind,
     place: MarkerPlace,
 ) -> Result<usize, MarkedVisitsError> {
     let directional = is_directional(marker)?;
@@ -113,7 +113,7 @@ pub fn assume_marker(
 pub fn mark_visits(
     events: &mut [CheckedEvent],
     junctions: &[VisitedJunction],
-    marker: &dyn Marker,
+    marker: MarkerKind,
     sightings: &[TimedSighting],
 ) -> Result<usize, MarkedVisitsError> {
     let directional = is_directional(marker)?;
@@ -143,11 +143,11 @@ pub fn mark_visits(
     Ok(elsewhere)
 }
 
-fn is_directional(marker: &dyn Marker) -> Result<bool, MarkedVisitsError> {
-    match marker.name() {
-        name if name == Directional.name() => Ok(true),
-        name if name == Undirected.name() => Ok(false),
-        name => Err(MarkedVisitsError::Marker(name)),
+fn is_directional(marker: MarkerKind) -> Result<bool, MarkedVisitsError> {
+    match marker {
+        Directional => Ok(true),
+        Undirected => Ok(false),
+        other => Err(MarkedVisitsError::Marker(other.name())),
     }
 }
 
@@ -234,11 +234,11 @@ mod tests {
         let here = MarkerPlace { position: [0.0, 2.0], heading: Some(FRAC_PI_2 - 0.7) };
         let nowhere = MarkerPlace { position: [10.0, 0.0], heading: None };
         for (marker, place, seen, expected) in [
-            (&Directional as &dyn Marker, here, Ok(2), [along(1), NONE, along(1)]),
-            (&Undirected, here, Ok(2), [LIES, NONE, LIES]),
-            (&Undirected, nowhere, Ok(0), [NONE; 3]),
-            (&Directional, nowhere, Err(MarkedVisitsError::NoHeading), [NONE; 3]),
-            (&NoMarker, here, Err(MarkedVisitsError::Marker("none")), [NONE; 3]),
+            (Directional, here, Ok(2), [along(1), NONE, along(1)]),
+            (Undirected, here, Ok(2), [LIES, NONE, LIES]),
+            (Undirected, nowhere, Ok(0), [NONE; 3]),
+            (Directional, nowhere, Err(MarkedVisitsError::NoHeading), [NONE; 3]),
+            (NoMarker, here, Err(MarkedVisitsError::Marker("none")), [NONE; 3]),
         ] {
             assert_eq!(assume_marker(&mut events, &junctions, marker, place), seen);
             assert_eq!(sightings(&events), expected);
@@ -250,7 +250,7 @@ mod tests {
         let (mut events, mut junctions) = visits([[3.0, 4.0], [20.0, 0.0], [3.0, 4.0]]);
         let place = marker_at_start(&junctions).unwrap();
         assert_eq!(place, MarkerPlace { position: [3.0, 4.0], heading: Some(PI) });
-        assume_marker(&mut events, &junctions, &Directional, place).unwrap();
+        assume_marker(&mut events, &junctions, Directional, place).unwrap();
         assert_eq!(sightings(&events), [along(0), NONE, along(0)]);
         // A visit that is undecided has no doors.
         junctions[0].doors.clear();
@@ -269,10 +269,10 @@ mod tests {
         // The first visit ended at 11 s, the last one began at 30 s.
         let [before, after] = [20_400, 20_600].map(|time| [at(time, [1.0, 0.0], 1.5)]);
         for (marker, seen, elsewhere, expected) in [
-            (&Directional as &dyn Marker, &and_elsewhere[..], 1, [NONE, NONE, along(0)]),
-            (&Undirected, &last[..1], 0, [NONE, NONE, LIES]),
-            (&Directional, &before, 0, [along(1), NONE, NONE]),
-            (&Directional, &after, 0, [NONE, NONE, along(1)]),
+            (Directional, &and_elsewhere[..], 1, [NONE, NONE, along(0)]),
+            (Undirected, &last[..1], 0, [NONE, NONE, LIES]),
+            (Directional, &before, 0, [along(1), NONE, NONE]),
+            (Directional, &after, 0, [NONE, NONE, along(1)]),
         ] {
             assert_eq!(mark_visits(&mut events, &junctions, marker, seen), Ok(elsewhere));
             assert_eq!(sightings(&events), expected);

@@ -10,15 +10,15 @@
 
 use serde::Serialize;
 use toposlam_model::{
+    aid::State,
     enumerate::Watch,
     mapping::MappingMethod,
-    marker::{Directional, Marker, NoMarker},
+    marker::{Directional, MarkerKind, NoMarker},
     percept::{Door, Percept, Sighting},
     visits::{
         AlgorithmSearchBounds, Explanation, VisitAlternative, VisitSet, VisitWay,
         alternatives_left, explain, explain_by_algorithm, states_after,
     },
-    world::State,
 };
 use toposlam_vision::visits::{VisitPercept, network_fit::NetworkFit};
 
@@ -100,7 +100,7 @@ impl PossibleVisits {
         if has_unseen_way(&events.events) {
             return Self { fit: VisitFit::UnseenWay, ..judged };
         }
-        let is_marked = config.marker.name() == Directional.name();
+        let is_marked = config.marker == Directional;
         if let Some(known) = &config.world {
             let KnownWorld { graph, states } = known;
             let mut after = states_after(graph, &config.marker, states, &sets);
@@ -115,7 +115,7 @@ impl PossibleVisits {
             let numbered = of_junctions.iter().enumerate();
             judged.decided_by_world =
                 numbered.filter(|&(_, &set)| is_decided(set)).map(|(number, _)| number).collect();
-        } else if is_marked || config.marker.name() == NoMarker.name() {
+        } else if is_marked || config.marker == NoMarker {
             let may_contradict = is_marked || sets.iter().any(|set| set.way() == VisitWay::Back);
             judged.fit = match explain(&sets, is_marked, MOST_DARTS, watch) {
                 Explanation::Explained(_) if may_contradict => VisitFit::Fits,
@@ -195,7 +195,7 @@ fn has_unseen_way(events: &[CheckedEvent]) -> bool {
 }
 
 /// The time of the visit up to which a world fits no choice of what was driven or is seen to end, in nanoseconds.
-fn refuted(driven: &DrivenVisits, known: &KnownWorld, marker: &dyn Marker) -> Option<u64> {
+fn refuted(driven: &DrivenVisits, known: &KnownWorld, marker: MarkerKind) -> Option<u64> {
     let DrivenVisits { events, junctions } = driven;
     if has_unseen_way(events) {
         return None;
@@ -210,7 +210,7 @@ fn refuted(driven: &DrivenVisits, known: &KnownWorld, marker: &dyn Marker) -> Op
 fn visit_sets(
     events: &[CheckedEvent],
     junctions: &[VisitedJunction],
-    marker: &dyn Marker,
+    marker: MarkerKind,
 ) -> Vec<(usize, VisitSet)> {
     let mut sets = Vec::new();
     let mut junctions = junctions.iter().peekable();
@@ -232,7 +232,7 @@ fn visit_sets(
 fn visit_set(
     junction: &VisitedJunction,
     sighting: Option<Sighting>,
-    marker: &dyn Marker,
+    marker: MarkerKind,
 ) -> VisitSet {
     let VisitedJunction { alternatives, goes_back, .. } = junction;
     let way = if *goes_back { VisitWay::Back } else { VisitWay::Through };
@@ -247,7 +247,7 @@ fn visit_set(
         let door = door.map(Door);
         let sightings = match sighting {
             Some(sighting) => vec![sighting],
-            None if marker.name() == NoMarker.name() => vec![Sighting::Nothing],
+            None if marker == NoMarker => vec![Sighting::Nothing],
             None => {
                 let pointing = (0..degree).map(|door| Sighting::Pointing(Door(door)));
                 pointing.chain([Sighting::Nothing, Sighting::Lying(1)]).collect()

@@ -137,7 +137,7 @@ fn good_run() -> RunEvents {
 fn in_world(plan: &FloorPlan, facing: Option<Dart>, config: &ConformConfig) -> ConformConfig {
     let graph = plan.graph().clone();
     let states = match facing {
-        Some(facing) => vec![GraphWorld::with_marker(&graph, config.marker, facing).state()],
+        Some(facing) => vec![GraphWorld::with_aid(&graph, config.marker, facing).state()],
         None => anywhere(&graph, &config.marker),
     };
     ConformConfig { world: Some(KnownWorld { graph, states }), ..config.clone() }
@@ -154,7 +154,7 @@ fn anywhere_in(plan: &FloorPlan) -> ConformConfig {
 fn without_world() -> ConformConfig {
     ConformConfig {
         world: None,
-        marker: &Directional,
+        marker: Directional,
         driver: RunDriver::from(MappingAlgorithm::Algorithm1),
         budget: RunBudget::default(),
         search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100_000 },

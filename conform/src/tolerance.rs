@@ -182,10 +182,10 @@ fn expected_after(departure: &Departure) -> Option<Percept> {
 #[cfg(test)]
 mod tests {
     use toposlam_model::{
+        aid::State,
         embedded_graph::Dart,
         percept::Sighting,
         trace::{TraceEvent, TraceEventKind},
-        world::State,
     };
 
     use super::*;
@@ -195,7 +195,7 @@ mod tests {
         let percept = |degree| Percept { degree, sighting: Sighting::Nothing };
         let at = |degree| MisfitReason::Percept { expected: percept(degree) };
         let no_door = MisfitReason::NoSuchDoor { degree: 3 };
-        let state = State { pose: Dart(0), placed: Some(Dart(0)) };
+        let state = State { pose: Dart(0), placed: Dart(0) };
         let event = TraceEvent { id: 2, kind: TraceEventKind::Percept(percept(5)) };
         for (reasons, expected) in [
             (&[at(3)][..], Some(percept(3))),

@@ -3,14 +3,14 @@
 
 use serde::{Serialize, Serializer};
 use toposlam_model::{
+    aid::State,
     ambiguity::{self, Twins, twins},
     embedded_graph::{Dart, EmbeddedGraph},
     folding::SmallestWorld,
     format::{named_world::NamedWorld, world_file},
     isomorphism::isomorphism,
-    marker::{Marker, NoMarker},
+    marker::{Marker, MarkerKind, NoMarker},
     trace::poses,
-    world::State,
 };
 
 use super::{config::ConformConfig, judgement::Judgement, known_world::KnownWorld};
@@ -28,7 +28,7 @@ pub struct TwinWorld {
     #[serde(serialize_with = "world_json")]
     pub world: NamedWorld,
     #[serde(skip)]
-    pub marker: &'static dyn Marker,
+    pub marker: MarkerKind,
     /// The dart that places the marker in the first world.
     #[serde(skip)]
     pub first_marker: Dart,
@@ -52,7 +52,7 @@ impl TwinWorld {
     pub(super) fn find(judgement: &Judgement, config: &ConformConfig) -> Option<Self> {
         let marker = config.marker;
         let diverges = judgement.divergence.is_some() || judgement.contradiction.is_some();
-        if diverges || marker.name() == NoMarker.name() {
+        if diverges || marker == NoMarker {
             return None;
         }
         let fits = |graph: &EmbeddedGraph, start: State| {
@@ -63,14 +63,14 @@ impl TwinWorld {
                 (graph, *states.iter().find(|&&start| fits(graph, start))?)
             }
             (None, Some(SmallestWorld::World { graph, marker: placed, .. })) => {
-                (graph, State { pose: Dart(0), placed: Some((*placed)?) })
+                (graph, State { pose: Dart(0), placed: (*placed)? })
             }
             _ => return None,
         };
-        let first_marker = start.placed?;
-        let Twins { worlds, may_be_more } = twins(graph, marker, first_marker, start.pose, &());
+        let first_marker = start.placed;
+        let Twins { worlds, may_be_more } = twins(graph, &marker, first_marker, start.pose, &());
         let explains = |twin: &&ambiguity::Twin| {
-            let placed = Some(marker.first_alike(&twin.graph, twin.facing));
+            let placed = marker.first_alike(&twin.graph, twin.facing);
             fits(&twin.graph, State { pose: twin.pose, placed })
         };
         let explaining: Vec<_> = worlds.iter().filter(explains).collect();

@@ -4,13 +4,13 @@
 use std::io::{self, Write};
 
 use toposlam_model::{
-    ambiguity::PlacedRobot,
+    aid::Action,
+    aid::AidKind,
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
     isomorphism::code,
-    marker::Marker,
     percept::Percept,
-    world::{Action, GraphWorld},
+    world::GraphWorld,
 };
 
 use crate::{
@@ -23,7 +23,7 @@ use crate::{
 #[derive(Clone, Copy)]
 pub struct ExplorerRun<'a> {
     pub world: &'a NamedWorld,
-    pub marker: &'a dyn Marker,
+    pub marker: AidKind,
     pub actions: &'a [Action],
     /// What the robot perceived, before the first action and after each, if that is not what the marker gives.
     pub percepts: Option<&'a [String]>,
@@ -67,23 +67,23 @@ impl Beside {
 
 impl<'a> ExplorerRun<'a> {
     /// The robot before the first action and after each.
-    pub(crate) fn robots(&self) -> Vec<PlacedRobot<'a>> {
+    pub(crate) fn robots(&self) -> Vec<GraphWorld<'a, AidKind>> {
         self.robots_in(self.world)
     }
 
     /// The same in the world beside, as far as the actions are possible there.
-    pub(crate) fn robots_beside(&self) -> Vec<PlacedRobot<'a>> {
+    pub(crate) fn robots_beside(&self) -> Vec<GraphWorld<'a, AidKind>> {
         self.beside.map_or_else(Vec::new, |(_, world)| self.robots_in(world))
     }
 
     /// What the robot perceived at a step.
-    pub(crate) fn percept(&self, step: usize, robot: &PlacedRobot) -> String {
+    pub(crate) fn percept(&self, step: usize, robot: &GraphWorld<'_, AidKind>) -> String {
         let own = self.percepts.and_then(|percepts| percepts.get(step)).cloned();
         own.unwrap_or_else(|| robot.sensed().to_string())
     }
 
-    fn robots_in(&self, world: &'a NamedWorld) -> Vec<PlacedRobot<'a>> {
-        let mut robot = GraphWorld::with_marker(&world.graph, self.marker, facing(world));
+    fn robots_in(&self, world: &'a NamedWorld) -> Vec<GraphWorld<'a, AidKind>> {
+        let mut robot = GraphWorld::with_aid(&world.graph, self.marker, facing(world));
         let mut robots = vec![robot.clone()];
         for &action in self.actions {
             if robot.act(action).is_err() {
@@ -111,8 +111,10 @@ impl<'a> ExplorerRun<'a> {
     pub fn print(&self, out: &mut dyn Write) -> io::Result<()> {
         let robots = self.robots();
         let difference = self.difference();
-        let places: Vec<_> =
-            robots.iter().map(|robot| self.world.state_text(&self.marker, robot.state())).collect();
+        let places: Vec<_> = robots
+            .iter()
+            .map(|robot| self.world.state_text(&self.marker, &robot.state()))
+            .collect();
         let width = places.iter().map(String::len).max().unwrap_or_default().max(CAME_IN.len());
         writeln!(out, "  {:>4}  {:7}  {:width$}  percept", "step", "action", CAME_IN)?;
         for (step, robot) in robots.iter().enumerate() {
@@ -202,7 +204,7 @@ mod tests {
     fn printed(doors: &[u32], beside: Option<(Beside, &NamedWorld)>) -> String {
         let world = chain("chain", 2);
         let actions: Vec<_> = doors.iter().map(|&door| Action::Take(Door(door))).collect();
-        let marker = &Directional;
+        let marker = Directional.into();
         let run = ExplorerRun { world: &world, marker, actions: &actions, percepts: None, beside };
         let mut out = Vec::new();
         run.print(&mut out).unwrap();

@@ -7,13 +7,14 @@ use std::ops::ControlFlow;
 
 use divan::{Bencher, counter::ItemsCount};
 use toposlam_model::{
+    aid,
     ambiguity::{AmbiguitySearch, Comparison},
     check::{Check, DEFAULT_STATE_BUDGET, RunChoices, Shard, SharedPrefixCheck, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     isomorphism::{Candidate, isomorphism},
     mapping::{Algorithm1Run, MovableMarkerRun, explore},
-    marker::{MARKERS, Marker, named},
+    marker::{MARKERS, MarkerKind},
     world::GraphWorld,
 };
 
@@ -77,7 +78,7 @@ fn check_movable(bencher: Bencher) {
     });
 }
 
-/// The search with every immovable marker one after the other, or with one; the items are placed
+/// The search with every fixed marker one after the other, or with one; the items are placed
 /// worlds.
 #[divan::bench(args = [
     ("simple", 8, "", 144_113),
@@ -86,10 +87,10 @@ fn check_movable(bencher: Bencher) {
 ], sample_count = 3)]
 fn counterexample(bencher: Bencher, (class, edges, marker, placed): (&str, usize, &str, u64)) {
     let class: Class = class.parse().unwrap();
-    let wanted = |kind: &&dyn Marker| kind.name() == marker || marker.is_empty();
-    let immovable = MARKERS.into_iter().filter(|marker| !marker.is_movable()).filter(wanted);
+    let wanted = |kind: &MarkerKind| kind.name() == marker || marker.is_empty();
+    let fixed = MARKERS.into_iter().filter(wanted);
     let searches: Vec<_> =
-        immovable.map(|marker| AmbiguitySearch::new(class, edges, marker).unwrap()).collect();
+        fixed.map(|marker| AmbiguitySearch::new(class, edges, marker).unwrap()).collect();
     bencher.counter(ItemsCount::new(placed)).bench(|| {
         let findings = searches.iter().map(|search| search.run(&()));
         let sizes = findings.flat_map(|findings| findings.unwrap().sizes);
@@ -100,7 +101,7 @@ fn counterexample(bencher: Bencher, (class, edges, marker, placed): (&str, usize
 /// A cycle of 300 edges against one of 301, with each marker: the walk or the relation.
 #[divan::bench(args = ["none", "undirected", "movable"], sample_count = 3)]
 fn compare_long_cycles(bencher: Bencher, marker: &str) {
-    let marker = named(marker).unwrap();
+    let marker = aid::named(marker).unwrap();
     let (one, other) = (EmbeddedGraph::cycle(300), EmbeddedGraph::cycle(301));
     bencher.bench(|| {
         let comparison = Comparison::new(marker, (&one, Dart(0)), (&other, Dart(0)));

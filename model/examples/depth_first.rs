@@ -102,10 +102,10 @@ impl DepthFirst {
 }
 
 impl Explorer for DepthFirst {
-    type Marker = MarkerKind;
+    type Aid = MarkerKind;
     type Choice = End;
 
-    fn marker(&self) -> MarkerKind {
+    fn aid(&self) -> MarkerKind {
         Directional
     }
 

@@ -53,7 +53,8 @@ impl Marker for Beacon {
 
 #[allow(dead_code, reason = "a test has the marker without the program")]
 fn main() -> Result<(), Box<dyn Error>> {
-    for marker in [named("undirected")?, &Beacon] {
+    let undirected = named("undirected")?;
+    for marker in [&undirected as &dyn Marker, &Beacon] {
         let findings = AmbiguitySearch::new(Class::Simple, 7, marker)?.run(&())?;
         for size in &findings.sizes {
             println!(

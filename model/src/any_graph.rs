@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use proptest::{collection::vec, prelude::*};
 
 use crate::{
+    aid::Aid,
     embedded_graph::EmbeddedGraph,
     enumerate::{Each, Enumeration, Watch},
     format::{named_world::NamedWorld, world_file},
-    marker::Marker,
     percept::{Door, Percept},
     world::{GraphWorld, World},
 };
@@ -98,8 +98,8 @@ impl Watch for StopAt {
 }
 
 /// A walk of a robot: what it perceives, and the doors that it takes. Doors are counted modulo the degree.
-pub(crate) fn walk<M: Marker>(
-    mut world: GraphWorld<'_, M>,
+pub(crate) fn walk<A: Aid>(
+    mut world: GraphWorld<'_, A>,
     turns: impl IntoIterator<Item = u32>,
 ) -> (Vec<Percept>, Vec<Door>) {
     let (mut percepts, mut doors) = (vec![world.sensed()], vec![]);

@@ -9,7 +9,8 @@
 //! * [`isomorphism`]: codes of starts, canonical forms, bijections as witnesses;
 //! * [`enumerate`]: every start and every world of a size, once;
 //! * [`folding`]: what a walk proves about its world;
-//! * [`marker`]: what each kind of marker adds to a percept (Sections 2.2, 2.3);
+//! * [`marker`]: what each kind of fixed marker adds to a percept (Sections 2.2, 2.3);
+//! * [`aid`]: marking aids that move: markers to carry, a string, other robots;
 //! * [`driving`]: scenes, junction estimates and Algorithm 2 (Sections 3 and 4);
 //! * [`floor_plan`]: hallways with geometry (Section 2.4);
 //! * [`world`]: the trait with everything that a robot can sense and do;
@@ -42,6 +43,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod aid;
 pub mod ambiguity;
 pub mod check;
 mod clone_in_place;

@@ -1,7 +1,6 @@
-//! The kinds of markers: what they add to a percept, and whether a robot can move them. Sections 2.2
-//! and 2.3.
+//! The kinds of fixed markers, and what they add to a percept. Sections 2.2 and 2.3.
 //!
-//! A marker is placed once, by the facing dart of a start.
+//! A marker is placed once, by the facing dart of a start. [Aids](crate::aid) that move have a state.
 
 use std::fmt;
 
@@ -9,10 +8,10 @@ use thiserror::Error;
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
-    percept::{Door, Sighting},
+    percept::{Door, MarkerSet, Sighting},
 };
 
-/// A kind of marker.
+/// A kind of fixed marker.
 ///
 /// Different facing darts may place it alike: an undirected marker lies at a vertex, and all darts of
 /// the vertex place it there.
@@ -36,12 +35,6 @@ pub trait Marker: Sync {
 
     fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart>;
 
-    /// Whether the robot can pick it up where it notices it, carry it and drop it. A dropped marker is
-    /// placed as if the robot's entry dart were the facing dart.
-    fn is_movable(&self) -> bool {
-        false
-    }
-
     /// Whether what it adds depends on the vertices of the facing dart and of the pose, and on their
     /// indices there, and on nothing else. What is behind their doors may then be undecided.
     fn is_local(&self) -> bool {
@@ -59,12 +52,22 @@ pub enum MarkerPart {
     OnEdge(Dart),
     /// Lies in the middle of the dart's edge and points away from the dart's vertex.
     OnEdgeAlong(Dart),
+    /// The fixed end of a string, at a vertex.
+    StringEnd(Vertex),
+    /// Another robot, with its back to this dart.
+    Robot { pose: Dart, shows_heading: bool },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkerLook {
     One,
     Other,
+    Third,
+    Fourth,
+}
+
+impl MarkerLook {
+    pub const ALL: [Self; 4] = [Self::One, Self::Other, Self::Third, Self::Fourth];
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,27 +92,14 @@ pub enum MarkerKind {
     TwoIdentical,
     /// The same, but they look different: the first is the one at the start vertex.
     TwoDistinct,
-    /// One undirected marker, at the start vertex at first, that the robot can move. Section 2.3, after
-    /// the paper's reference 8: Dudek, Jenkin, Milios and Wilkes, "Robotic exploration as graph
-    /// construction" (1991).
-    Movable,
 }
 
 pub use MarkerKind::{
-    DirectedEdge, Directional, Movable, NoMarker, TwoDistinct, TwoIdentical, Undirected,
-    UndirectedEdge,
+    DirectedEdge, Directional, NoMarker, TwoDistinct, TwoIdentical, Undirected, UndirectedEdge,
 };
 
-pub const MARKERS: [&dyn Marker; 8] = [
-    &NoMarker,
-    &Undirected,
-    &Directional,
-    &UndirectedEdge,
-    &DirectedEdge,
-    &TwoIdentical,
-    &TwoDistinct,
-    &Movable,
-];
+pub const MARKERS: [MarkerKind; 7] =
+    [NoMarker, Undirected, Directional, UndirectedEdge, DirectedEdge, TwoIdentical, TwoDistinct];
 
 /// The ends of the edge of a dart: its own, and the other.
 fn ends(graph: &EmbeddedGraph, dart: Dart) -> [Dart; 2] {
@@ -117,6 +107,14 @@ fn ends(graph: &EmbeddedGraph, dart: Dart) -> [Dart; 2] {
 }
 
 impl MarkerKind {
+    pub const fn name(self) -> &'static str {
+        self.texts().0
+    }
+
+    pub const fn about(self) -> &'static str {
+        self.texts().1
+    }
+
     const fn texts(self) -> (&'static str, &'static str) {
         match self {
             NoMarker => {
@@ -147,11 +145,6 @@ impl MarkerKind {
                 "two undirected markers that look different, at the start vertex and at the other end \
                  of the edge faced: which of them are here?",
             ),
-            Movable => (
-                "movable",
-                "one undirected marker, at the start vertex at first, that the robot can pick up, \
-                 carry and drop: is it here?",
-            ),
         }
     }
 }
@@ -169,7 +162,7 @@ impl Marker for MarkerKind {
     fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
         let is_here = |dart| graph.vertex(dart) == graph.vertex(pose);
         match self {
-            Undirected | Movable if is_here(facing) => Sighting::Lying(1),
+            Undirected if is_here(facing) => Sighting::Lying(1),
             Directional if is_here(facing) => {
                 let (from, to) = (graph.index(pose), graph.index(facing));
                 Sighting::Pointing(Door::between(from, to, graph.degree_around(pose)))
@@ -179,9 +172,10 @@ impl Marker for MarkerKind {
             DirectedEdge if pose == graph.opposite(facing) => Sighting::PassedAlong,
             TwoIdentical | TwoDistinct => match (self, ends(graph, facing).map(is_here)) {
                 (_, [false, false]) => Sighting::Nothing,
-                (TwoDistinct, [true, false]) => Sighting::First,
-                (TwoDistinct, [false, true]) => Sighting::Second,
-                (TwoDistinct, [true, true]) => Sighting::Both,
+                (TwoDistinct, here) => {
+                    let here = (0..).zip(here).filter(|(_, is_here)| *is_here).map(|(at, _)| at);
+                    MarkerSet::from_numbers(here).map_or(Sighting::Nothing, Sighting::These)
+                }
                 (_, [one, other]) => Sighting::Lying(u32::from(one) + u32::from(other)),
             },
             _ => Sighting::Nothing,
@@ -197,7 +191,7 @@ impl Marker for MarkerKind {
         };
         match self {
             NoMarker => Dart(0),
-            Undirected | Movable => graph.first_dart(graph.vertex(facing)),
+            Undirected => graph.first_dart(graph.vertex(facing)),
             Directional | DirectedEdge => facing,
             UndirectedEdge => facing.min(graph.opposite(facing)),
             TwoDistinct => first_parallel(facing),
@@ -210,7 +204,7 @@ impl Marker for MarkerKind {
         ends.sort_unstable();
         match self {
             NoMarker => graph.darts().collect(),
-            Undirected | TwoDistinct | Movable => graph.darts_of(graph.vertex(facing)).collect(),
+            Undirected | TwoDistinct => graph.darts_of(graph.vertex(facing)).collect(),
             Directional => vec![facing],
             UndirectedEdge | DirectedEdge => ends.to_vec(),
             TwoIdentical => {
@@ -226,7 +220,7 @@ impl Marker for MarkerKind {
         let at = |vertex, look| MarkerPart::At { vertex, look };
         match self {
             NoMarker => vec![],
-            Undirected | Movable => vec![at(here, MarkerLook::One)],
+            Undirected => vec![at(here, MarkerLook::One)],
             Directional => vec![MarkerPart::Pointing(facing)],
             UndirectedEdge => vec![MarkerPart::OnEdge(facing)],
             DirectedEdge => vec![MarkerPart::OnEdgeAlong(facing)],
@@ -235,12 +229,8 @@ impl Marker for MarkerKind {
         }
     }
 
-    fn is_movable(&self) -> bool {
-        matches!(self, Movable)
-    }
-
     fn is_local(&self) -> bool {
-        matches!(self, NoMarker | Undirected | Directional | Movable)
+        matches!(self, NoMarker | Undirected | Directional)
     }
 }
 
@@ -269,10 +259,6 @@ impl<M: Marker + ?Sized> Marker for &M {
         (**self).parts(graph, facing)
     }
 
-    fn is_movable(&self) -> bool {
-        (**self).is_movable()
-    }
-
     fn is_local(&self) -> bool {
         (**self).is_local()
     }
@@ -293,14 +279,14 @@ impl PartialEq for dyn Marker + '_ {
 impl Eq for dyn Marker + '_ {}
 
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{0}` is not a marker; the markers are {names}", names = MARKERS.map(Marker::name).join(", "))]
+#[error("`{0}` is not a marker; the markers are {names}", names = MARKERS.map(MarkerKind::name).join(", "))]
 pub struct UnknownMarker(String);
 
 /// The kind of marker with this name.
 ///
 /// # Errors
 /// Returns an error if there is none. The message lists the names of all markers.
-pub fn named(name: &str) -> Result<&'static dyn Marker, UnknownMarker> {
+pub fn named(name: &str) -> Result<MarkerKind, UnknownMarker> {
     let marker = MARKERS.into_iter().find(|marker| marker.name() == name);
     marker.ok_or_else(|| UnknownMarker(name.to_owned()))
 }

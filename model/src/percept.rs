@@ -5,7 +5,10 @@ use std::{cmp::Ordering, fmt};
 
 use serde::{Serialize, Serializer};
 
-use crate::embedded_graph::{Dart, EmbeddedGraph};
+use crate::{
+    counts::counted,
+    embedded_graph::{Dart, EmbeddedGraph},
+};
 
 /// A way out of a vertex: the `i`-th dart clockwise from the one by which the robot came in. Door 0
 /// is the way back.
@@ -47,17 +50,169 @@ pub enum Sighting {
     Pointing(Door),
     /// This number of undirected markers that look alike are here; at least one.
     Lying(u32),
-    /// Of two markers that look different, the first is here.
-    First,
-    /// Of two markers that look different, the second is here.
-    Second,
-    /// Two markers that look different are both here.
-    Both,
+    /// Of markers that look different, these are here.
+    These(MarkerSet),
     Passed,
     /// The edge just traversed is marked, by an arrow in the sense of the traversal.
     PassedAlong,
     /// The edge just traversed is marked, by an arrow in the opposite sense.
     PassedAgainst,
+    /// A string is here.
+    String(StringView),
+    /// The other robots of the team.
+    Team(TeamView),
+}
+
+/// Some of at most eight markers that look different; at least one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MarkerSet(u8);
+
+impl MarkerSet {
+    /// The set of the markers with these numbers, from 0; `None` if it is empty.
+    pub fn from_numbers(numbers: impl IntoIterator<Item = usize>) -> Option<Self> {
+        let set = numbers.into_iter().filter(|&at| at < 8).fold(0, |set, at| set | 1_u8 << at);
+        (set != 0).then_some(Self(set))
+    }
+
+    pub(crate) fn bits(self) -> u32 {
+        self.0.into()
+    }
+
+    /// The numbers of its markers, from 0.
+    pub fn numbers(self) -> impl Iterator<Item = usize> {
+        (0..8).filter(move |at| self.0 >> at & 1 == 1)
+    }
+}
+
+impl MarkerSet {
+    /// The names of its markers: `first`, `second` and so on.
+    pub fn names(self) -> Vec<&'static str> {
+        const NAMES: [&str; 8] =
+            ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
+        self.numbers().map(|at| NAMES[at]).collect()
+    }
+}
+
+/// `first marker`, `first and third marker`.
+impl fmt::Display for MarkerSet {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        write!(out, "{} marker", listed(&self.names()))
+    }
+}
+
+/// Some of the first [`MOST`](Self::MOST) doors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct DoorSet(u32);
+
+impl DoorSet {
+    /// A set holds doors below this number.
+    pub const MOST: u32 = u32::BITS;
+
+    /// Adds a door, which is below [`MOST`](Self::MOST).
+    pub fn insert(&mut self, door: Door) {
+        self.0 |= 1_u32.checked_shl(door.0).unwrap_or_default();
+    }
+
+    pub(crate) fn bits(self) -> u32 {
+        self.0
+    }
+
+    pub fn doors(self) -> impl Iterator<Item = Door> {
+        (0..Self::MOST).filter(move |door| self.0 >> door & 1 == 1).map(Door)
+    }
+
+    fn seen_from(self, entry: Door, degree: u32) -> Self {
+        let mut turned = Self::default();
+        self.doors().for_each(|door| turned.insert(door.seen_from(entry, degree)));
+        turned
+    }
+}
+
+/// What a robot sees of a string at a vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct StringView {
+    /// The doors through which it runs.
+    pub doors: DoorSet,
+    /// Whether the end that is fixed is here.
+    pub fixed_end: bool,
+    /// Whether the other end lies here.
+    pub free_end: bool,
+    /// If the robot holds that end: the door through which the string runs from its hand.
+    pub hand: Option<Door>,
+}
+
+impl fmt::Display for StringView {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let doors: Vec<_> = self.doors.doors().map(|door| door.0.to_string()).collect();
+        let doors: Vec<&str> = doors.iter().map(String::as_str).collect();
+        let plural = if doors.len() == 1 { "" } else { "s" };
+        let runs =
+            (!doors.is_empty()).then(|| format!("string through door{plural} {}", listed(&doors)));
+        let hand = self.hand.map(|door| format!("from the hand through door {}", door.0));
+        let ends = [(self.fixed_end, "fixed end"), (self.free_end, "free end")];
+        let ends = ends.into_iter().filter(|(is_here, _)| *is_here).map(|(_, end)| end.to_owned());
+        let parts: Vec<_> = runs.into_iter().chain(hand).chain(ends).collect();
+        write!(out, "{}", parts.join(", "))
+    }
+}
+
+/// What a robot knows of the others of its team: the second robot, and the third.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TeamView(pub [OtherRobot; 2]);
+
+/// Another robot of a team.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum OtherRobot {
+    /// There is none.
+    #[default]
+    Absent,
+    /// At a vertex with so many doors, where none of the robots before it is.
+    Elsewhere { degree: u32 },
+    /// Here; and the door along which it stands, if robots show that.
+    Here { along: Option<Door> },
+    /// Where the second robot is, as that one sees it.
+    WithSecond { along: Option<Door> },
+}
+
+impl TeamView {
+    fn seen_from(self, entry: Door, degree: u32) -> Self {
+        Self(self.0.map(|robot| match robot {
+            OtherRobot::Here { along } => {
+                OtherRobot::Here { along: along.map(|door| door.seen_from(entry, degree)) }
+            }
+            other => other,
+        }))
+    }
+}
+
+/// `robot 2 here along door 1, robot 3 elsewhere at 4 doors`.
+impl fmt::Display for TeamView {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let along = |along: &Option<Door>| {
+            along.map(|door| format!(" along door {}", door.0)).unwrap_or_default()
+        };
+        let robot = |(number, robot): (u8, &OtherRobot)| match robot {
+            OtherRobot::Absent => None,
+            OtherRobot::Elsewhere { degree } => {
+                Some(format!("robot {number} elsewhere at {}", counted(*degree as usize, "door")))
+            }
+            OtherRobot::Here { along: door } => Some(format!("robot {number} here{}", along(door))),
+            OtherRobot::WithSecond { along: door } => {
+                Some(format!("robot {number} with robot 2{}", along(door)))
+            }
+        };
+        let robots: Vec<_> = (2..).zip(&self.0).filter_map(robot).collect();
+        write!(out, "{}", robots.join(", "))
+    }
+}
+
+/// `1`, `1 and 2`, `1, 2 and 3`.
+fn listed(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [name] => (*name).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
 }
 
 impl fmt::Display for Sighting {
@@ -67,12 +222,12 @@ impl fmt::Display for Sighting {
             Self::Pointing(door) => write!(out, "marker along door {}", door.0),
             Self::Lying(1) => write!(out, "marker"),
             Self::Lying(count) => write!(out, "{count} markers"),
-            Self::First => write!(out, "first marker"),
-            Self::Second => write!(out, "second marker"),
-            Self::Both => write!(out, "both markers"),
+            Self::These(markers) => write!(out, "{markers}"),
             Self::Passed => write!(out, "past the mark"),
             Self::PassedAlong => write!(out, "past the mark, along its arrow"),
             Self::PassedAgainst => write!(out, "past the mark, against its arrow"),
+            Self::String(view) => write!(out, "{view}"),
+            Self::Team(view) => write!(out, "{view}"),
         }
     }
 }
@@ -106,9 +261,16 @@ impl Percept {
     #[inline]
     #[must_use]
     pub fn seen_from(self, entry: Door) -> Self {
-        use Sighting::{Nothing, Passed, PassedAgainst, PassedAlong, Pointing};
+        use Sighting::{Nothing, Passed, PassedAgainst, PassedAlong, Pointing, String, Team};
+        let seen_from = |door: Door| door.seen_from(entry, self.degree);
         let sighting = match self.sighting {
-            Pointing(door) => Pointing(door.seen_from(entry, self.degree)),
+            Pointing(door) => Pointing(seen_from(door)),
+            String(view) => String(StringView {
+                doors: view.doors.seen_from(entry, self.degree),
+                hand: view.hand.map(seen_from),
+                ..view
+            }),
+            Team(view) => Team(view.seen_from(entry, self.degree)),
             Passed | PassedAlong | PassedAgainst if entry != Door::BACK => Nothing,
             same => same,
         };

@@ -3,16 +3,16 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use toposlam_model::{
+    aid::{AIDS, Action, Aid, AidAction, AidKind, Places, State, named},
     ambiguity::{
         AmbiguitySearch, Comparison, Findings, KeptPairs, PlacedRobot, PlacedWorld, Relation,
-        Unfinished, Walk, replay, state_count,
+        Unfinished, Walk, has_more_states, replay,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
     isomorphism::{Bijection, code},
-    marker::{MARKERS, Marker, named},
     percept::{Door, Percept},
-    world::{Action, State, World},
+    world::World,
 };
 
 use crate::starts;
@@ -170,7 +170,7 @@ fn tells_apart(one: &PlacedRobot, other: &PlacedRobot, length: usize) -> Option<
 fn the_walk_is_the_shortest_and_the_least() {
     let mut walks = 0;
     let graphs = starts(Class::Multigraph, 3);
-    for marker in MARKERS {
+    for marker in AIDS {
         for (one, other) in graphs.iter().zip(graphs.iter().cycle().skip(5)) {
             let comparison = Comparison::new(marker, (one, Dart(0)), (other, Dart(0)));
             let Some(walk) = comparison.walk([Dart(0), Dart(0)]) else { continue };
@@ -210,10 +210,10 @@ fn a_relation_that_is_not_kept_proves_nothing() {
     for nowhere in [
         // A triangle has the darts 0 to 5.
         State { pose: Dart(6), ..one.state() },
-        State { placed: Some(Dart(6)), ..one.state() },
-        State { placed: None, ..one.state() },
+        State { placed: Places::from_elem(Some(Dart(6)), 1), ..one.state() },
+        State { placed: Places::new(), ..one.state() },
     ] {
-        let more = [&pairs[..], &[(nowhere, other.state())]].concat();
+        let more = [&pairs[..], &[(nowhere.clone(), other.state())]].concat();
         assert!(!Relation(more).verify(&one, &other), "{nowhere:?}");
     }
     // With an undirected marker, the same pairs show different percepts.
@@ -221,8 +221,8 @@ fn a_relation_that_is_not_kept_proves_nothing() {
     let comparison = Comparison::new(undirected, (&three, Dart(0)), (&four, Dart(0)));
     let [one, other] = comparison.starts([Dart(0), Dart(0)]);
     let [here, there] = [one.state().placed, other.state().placed];
-    let marked = |(one, other): (State, State)| {
-        (State { placed: here, ..one }, State { placed: there, ..other })
+    let marked = |(one, other): (State<_>, State<_>)| {
+        (State { placed: here.clone(), ..one }, State { placed: there.clone(), ..other })
     };
     assert!(!Relation(pairs.into_iter().map(marked).collect()).verify(&one, &other));
 }
@@ -239,7 +239,7 @@ fn a_walk_that_shows_no_difference_proves_nothing() {
         Walk { actions: walk.actions[..2].to_vec(), ..walk.clone() },
         Walk { actions: [&walk.actions[..], &walk.actions[..1]].concat(), ..walk.clone() },
         Walk { percepts: [walk.percepts[1], walk.percepts[0]], ..walk.clone() },
-        Walk { actions: vec![Action::Drop], ..walk.clone() },
+        Walk { actions: vec![Action::Do(AidAction::Drop)], ..walk.clone() },
     ];
     for wrong in wrong {
         assert!(!wrong.verify(&one, &other), "{wrong:?}");
@@ -297,13 +297,26 @@ fn the_start_that_is_like_another_is_found_among_those_that_the_marker_allows() 
 #[test]
 fn the_states_of_a_triangle_are_its_poses_times_the_places_of_the_marker() {
     let [triangle, _] = cycles();
-    for (marker, count) in [("undirected", 6), ("directional", 6), ("movable", 6 * (3 + 1))] {
-        assert_eq!(state_count(&triangle, named(marker).unwrap()), count);
+    for (aid, count) in [
+        ("undirected", 6),
+        ("directional", 6),
+        ("movable", 6 * (3 + 1)),
+        ("movable-2", 6 * (6 + 3 + 1)),
+        ("movable-2-distinct", 6 * (3 + 1) * (3 + 1)),
+        ("movable-directional", 6 * (6 + 1)),
+        // It lies at the start vertex, or over one of the two edges there; or the robot holds it, with its back to the
+        // edge over which it runs, or not.
+        ("string-1", 6 * (1 + 2) + 2 * 1 + 2 * 2),
+        ("team-2", 6 * 6),
+        ("team-3-round", 6 * 6 * 6),
+    ] {
+        let has_more = |most| has_more_states(&triangle, named(aid).unwrap(), Dart(0), most);
+        assert!(!has_more(count) && has_more(count - 1), "{aid}");
     }
 }
 
 /// All placed worlds of a class and its sizes, each by a graph and a facing dart.
-fn placed_worlds(class: Class, edges: usize, marker: &dyn Marker) -> Vec<(EmbeddedGraph, Dart)> {
+fn placed_worlds(class: Class, edges: usize, marker: AidKind) -> Vec<(EmbeddedGraph, Dart)> {
     let mut placed: Vec<(EmbeddedGraph, Dart)> = Vec::new();
     for edges in 1..=edges {
         for graph in Enumeration::new(Each::World, class, edges).unwrap().graphs() {
@@ -330,7 +343,7 @@ fn placed_worlds(class: Class, edges: usize, marker: &dyn Marker) -> Vec<(Embedd
 #[test]
 fn the_search_finds_what_comparing_all_with_all_finds() {
     for (class, edges) in [(Class::Multigraph, 3), (Class::Simple, 5), (Class::Planar, 5)] {
-        for marker in MARKERS {
+        for marker in AIDS {
             let worlds = placed_worlds(class, edges, marker);
             let mut ambiguous = vec![0; edges];
             for (place, (one, facing)) in worlds.iter().enumerate() {
@@ -359,7 +372,7 @@ fn the_search_finds_what_comparing_all_with_all_finds() {
 /// the worlds are different ones.
 #[test]
 fn every_pair_is_confirmed_by_a_relation_from_every_start() {
-    for marker in MARKERS {
+    for marker in AIDS {
         for [one, other] in search(Class::Multigraph, 3, marker.name()).pairs() {
             assert_ne!(one, other);
             let facing = PlacedWorld::FACING;

@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use toposlam_model::{
+    aid::{AidAction, RefusedAction},
     embedded_graph::{MAX_EDGES, Vertex},
     folding::ContradictionReason,
     mapping::{
@@ -9,7 +10,7 @@ use toposlam_model::{
         ObservedWorld, explore,
     },
     percept::{Door, Percept, Sighting},
-    world::{MarkerCarrier, RefusedAction, World},
+    world::{AidHandler, World},
 };
 
 use crate::{marked, plain};
@@ -44,22 +45,19 @@ impl World for ScriptedWorld<'_> {
         self.refused.map_or(Ok(()), Err)
     }
 
-    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = RefusedAction>> {
+    fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = RefusedAction>> {
         Some(self)
     }
 }
 
-impl MarkerCarrier for ScriptedWorld<'_> {
+impl AidHandler for ScriptedWorld<'_> {
     type Error = RefusedAction;
 
-    fn pick_up(&mut self) -> Result<(), RefusedAction> {
-        self.refused
-            .filter(|refused| *refused == RefusedAction::NothingToPickUp)
-            .map_or(Ok(()), Err)
-    }
-
-    fn drop(&mut self) -> Result<(), RefusedAction> {
-        Ok(())
+    fn handle(&mut self, action: AidAction) -> Result<(), RefusedAction> {
+        let refused = |refused: &RefusedAction| {
+            action == AidAction::PickUp && *refused == RefusedAction::NothingToPickUp
+        };
+        self.refused.filter(refused).map_or(Ok(()), Err)
     }
 }
 

@@ -26,7 +26,7 @@ fn printed(page: &str, heading: &str) -> Vec<String> {
 }
 
 fn moves(algorithm: MappingAlgorithm, world: &NamedWorld, facing: Dart) -> u64 {
-    let mut robot = GraphWorld::with_marker(&world.graph, algorithm.marker(), facing);
+    let mut robot = GraphWorld::with_aid(&world.graph, algorithm.aid(), facing);
     let (journey, mapped) = algorithm.map_world(&mut robot, world.graph.dart_count(), &mut ());
     mapped.unwrap();
     journey.moves()

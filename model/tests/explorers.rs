@@ -10,6 +10,7 @@ use std::borrow::Cow;
 use depth_first::DepthFirst;
 use own_marker::Beacon;
 use toposlam_model::{
+    aid::RefusedAction,
     ambiguity::AmbiguitySearch,
     check::{Shard, SharedPrefixCheck, Tally},
     embedded_graph::Dart,
@@ -19,7 +20,6 @@ use toposlam_model::{
     },
     marker::{Directional, Marker, MarkerKind, named},
     percept::Door,
-    world::RefusedAction,
 };
 
 use crate::checked;
@@ -78,10 +78,10 @@ enum Broken {
 struct BrokenExplorer(Broken, DepthFirst);
 
 impl Explorer for BrokenExplorer {
-    type Marker = MarkerKind;
+    type Aid = MarkerKind;
     type Choice = ();
 
-    fn marker(&self) -> MarkerKind {
+    fn aid(&self) -> MarkerKind {
         Directional
     }
 
@@ -153,10 +153,10 @@ fn the_sweep_catches_broken_explorers() {
 /// distinguishes no more worlds: a robot can go and look.
 #[test]
 fn a_beacon_is_worth_as_much_as_an_undirected_marker() {
-    let ambiguous = |marker: &'static dyn Marker| {
+    let ambiguous = |marker: &dyn Marker| {
         let findings = AmbiguitySearch::new(Class::Simple, 7, marker).unwrap().run(&()).unwrap();
         findings.sizes.iter().map(|size| size.ambiguous).collect::<Vec<_>>()
     };
     assert_eq!(ambiguous(&Beacon), [0, 0, 0, 0, 0, 6, 4]);
-    assert_eq!(ambiguous(named("undirected").unwrap()), ambiguous(&Beacon));
+    assert_eq!(ambiguous(&named("undirected").unwrap()), ambiguous(&Beacon));
 }

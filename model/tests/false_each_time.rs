@@ -1,12 +1,13 @@
 //! Percepts that are false each time in the same way: which of them no robot can detect.
 
 use toposlam_model::{
+    aid::RefusedAction,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     isomorphism::Bijection,
     mapping::{FACING, MappingAlgorithm, MappingMethod, Relocate},
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, RefusedAction, World},
+    world::{GraphWorld, World},
 };
 
 use crate::starts;

@@ -4,21 +4,17 @@
 use std::collections::BTreeMap;
 
 use toposlam_model::{
+    aid::{AidKind, State, named},
     ambiguity::{Comparison, Relation},
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
     isomorphism::isomorphism,
-    marker::{Marker, named},
     percept::Door,
-    world::State,
 };
 
 use crate::world;
 
-fn comparison<'w>(
-    marker: &'static dyn Marker,
-    [one, other]: [&'w NamedWorld; 2],
-) -> Comparison<'w> {
+fn comparison<'w>(marker: AidKind, [one, other]: [&'w NamedWorld; 2]) -> Comparison<'w> {
     let placed = |world: &'w NamedWorld| (&world.graph, world.start.unwrap());
     Comparison::new(marker, placed(one), placed(other))
 }

@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use toposlam_model::{
+    aid::RefusedAction,
     check::{every_way, first_false_step, judge_start},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
@@ -9,7 +10,7 @@ use toposlam_model::{
     isomorphism::Candidate,
     mapping::{Explorer, FoldingRun, MappingError, ObservedWorld, explore},
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, RefusedAction, World},
+    world::{GraphWorld, World},
 };
 
 use crate::{checked, starts};

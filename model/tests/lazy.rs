@@ -75,10 +75,10 @@ struct Walker<M> {
 }
 
 impl<M: Marker + Clone> Explorer for Walker<M> {
-    type Marker = M;
+    type Aid = M;
     type Choice = ();
 
-    fn marker(&self) -> M {
+    fn aid(&self) -> M {
         self.marker.clone()
     }
 

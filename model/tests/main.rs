@@ -54,6 +54,7 @@ fn marked(degree: u32, door: u32) -> Percept {
     Percept { degree, sighting: Sighting::Pointing(Door(door)) }
 }
 
+mod aids;
 mod ambiguity;
 mod check;
 mod contradictions;

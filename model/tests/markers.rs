@@ -1,11 +1,12 @@
 //! What each kind of marker adds to a percept, and what a robot can do with it.
 
 use toposlam_model::{
+    aid::{AidAction, RefusedAction},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     marker::{MARKERS, Marker, named},
-    percept::{Door, Sighting},
-    world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World},
+    percept::Sighting,
+    world::{AidHandler, GraphWorld},
 };
 
 /// A junction `j` with, clockwise, a way `p` to a dead end `a`, a way `q` to a bend `b`, and a loop.
@@ -29,12 +30,11 @@ fn shown(marker: &str, facing: u32) -> String {
         Sighting::Nothing => ".".to_owned(),
         Sighting::Pointing(door) => door.0.to_string(),
         Sighting::Lying(count) => "x".repeat(count as usize),
-        Sighting::First => "f".to_owned(),
-        Sighting::Second => "s".to_owned(),
-        Sighting::Both => "fs".to_owned(),
+        Sighting::These(markers) => markers.numbers().map(|at| ["f", "s"][at]).collect(),
         Sighting::Passed => "-".to_owned(),
         Sighting::PassedAlong => ">".to_owned(),
         Sighting::PassedAgainst => "<".to_owned(),
+        other => panic!("{other} is seen of no fixed marker"),
     });
     sightings.collect::<Vec<_>>().join(" ")
 }
@@ -42,7 +42,7 @@ fn shown(marker: &str, facing: u32) -> String {
 /// And the robot may begin where it is noticed as at the start.
 #[test]
 fn each_marker_is_noticed_where_it_lies() {
-    let cases: [(_, _, _, &[u32]); 8] = [
+    let cases: [(_, _, _, &[u32]); 7] = [
         ("none", ". . . . . . . .", ". . . . . . . .", &[0, 1, 2, 3, 4, 5, 6, 7]),
         ("undirected", ". x x x x . . .", ". x x x x . . .", &[1, 2, 3, 4]),
         ("directional", ". 1 0 3 2 . . .", ". 2 1 0 3 . . .", &[2]),
@@ -50,7 +50,6 @@ fn each_marker_is_noticed_where_it_lies() {
         ("directed-edge", ". . < . . > . .", ". . . < > . . .", &[2, 5]),
         ("two-identical", ". x x x x x x .", ". xx xx xx xx . . .", &[1, 2, 3, 4, 5, 6]),
         ("two-distinct", ". f f f f s s .", ". fs fs fs fs . . .", &[1, 2, 3, 4]),
-        ("movable", ". x x x x . . .", ". x x x x . . .", &[1, 2, 3, 4]),
     ];
     for (marker, by_the_way_to_the_bend, by_the_loop, starts) in cases {
         assert_eq!(shown(marker, 2), by_the_way_to_the_bend, "{marker}");
@@ -86,31 +85,13 @@ fn the_first_facing_dart_alike_stands_for_the_place() {
 }
 
 #[test]
-fn a_movable_marker_is_picked_up_where_it_lies_and_dropped_where_the_robot_is() {
-    let graph = junction();
-    let mut world = GraphWorld::with_marker(&graph, named("movable").unwrap(), Dart(2));
-    let marked = |world: &mut GraphWorld<'_, _>| world.percept().unwrap().sighting;
-    assert_eq!(MarkerCarrier::drop(&mut world), Err(RefusedAction::NothingToDrop));
-    assert_eq!(world.actions().last(), Some(Action::PickUp));
-    world.pick_up().unwrap();
-    assert_eq!((marked(&mut world), world.carries()), (Sighting::Nothing, true));
-    assert_eq!(world.pick_up(), Err(RefusedAction::NothingToPickUp));
-    world.traverse(Door(0)).unwrap();
-    assert_eq!(world.actions().last(), Some(Action::Drop));
-    world.act(Action::Drop).unwrap();
-    assert_eq!((marked(&mut world), world.state().placed), (Sighting::Lying(1), Some(Dart(5))));
-    world.traverse(Door(0)).unwrap();
-    assert_eq!(marked(&mut world), Sighting::Nothing);
-    assert_eq!(world.actions().last(), Some(Action::Take(Door(3))));
-}
-
-#[test]
 fn a_marker_that_stays_where_it_is_cannot_be_picked_up() {
     let graph = junction();
-    for marker in MARKERS.into_iter().filter(|marker| !marker.is_movable()) {
-        let mut world = GraphWorld::with_marker(&graph, marker, Dart(2));
-        assert_eq!(world.pick_up(), Err(RefusedAction::NothingToPickUp), "{marker:?}");
-        assert_eq!(world.actions().count(), 4);
+    for marker in MARKERS {
+        let mut world = GraphWorld::with_aid(&graph, marker, Dart(2));
+        let refused = world.handle(AidAction::PickUp);
+        assert_eq!(refused, Err(RefusedAction::NothingToPickUp), "{marker:?}");
+        assert_eq!(world.actions().len(), 4);
     }
 }
 
@@ -118,13 +99,12 @@ fn a_marker_that_stays_where_it_is_cannot_be_picked_up() {
 fn an_unknown_marker_is_refused_with_the_names_of_all_markers() {
     for marker in MARKERS {
         assert_eq!(named(marker.name()), Ok(marker));
-        assert_eq!(format!("{marker:?}"), marker.name());
         assert_eq!(MARKERS.into_iter().filter(|&other| other == marker).count(), 1);
         assert!(!marker.about().is_empty());
     }
     assert_eq!(
         named("chalk").unwrap_err().to_string(),
         "`chalk` is not a marker; the markers are none, undirected, directional, undirected-edge, \
-         directed-edge, two-identical, two-distinct, movable"
+         directed-edge, two-identical, two-distinct"
     );
 }

@@ -21,7 +21,7 @@ fn story<E: Explorer + Default>(graph: &EmbeddedGraph) -> Vec<(u64, MappingEvent
         }
     };
     let mut run = E::default();
-    let mut world = GraphWorld::with_marker(graph, run.marker(), Dart(0));
+    let mut world = GraphWorld::with_aid(graph, run.aid(), Dart(0));
     explore(&mut run, &mut Observed::new(&mut world, &mut listen)).unwrap();
     story
 }

@@ -4,7 +4,7 @@ use std::panic::{self, AssertUnwindSafe};
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    marker::{Directional, Marker},
+    marker::{Directional, MarkerKind},
     percept::Door,
 };
 
@@ -75,7 +75,7 @@ pub enum Exhibit {
         /// The place of the world among those shown, from 0.
         world: usize,
         /// The marker, placed by the world's facing dart.
-        marker: &'static dyn Marker,
+        marker: MarkerKind,
         /// The robot's entry dart at the beginning.
         pose: Dart,
         doors: Vec<Door>,
@@ -91,6 +91,6 @@ impl Exhibit {
     /// A walk in the first world, with the directional marker.
     #[must_use]
     pub fn walk(pose: Dart, doors: &[Door]) -> Self {
-        Self::Walk { world: 0, marker: &Directional, pose, doors: doors.to_vec() }
+        Self::Walk { world: 0, marker: Directional, pose, doors: doors.to_vec() }
     }
 }

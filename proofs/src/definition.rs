@@ -4,9 +4,9 @@
 use std::mem;
 
 use toposlam_model::{
+    aid::{Aid, State},
     embedded_graph::{Dart, EmbeddedGraph},
-    marker::Marker,
-    world::{GraphWorld, State},
+    world::GraphWorld,
 };
 
 /// Whether the entry at each number's entry is that number, and the entry is another number.
@@ -132,24 +132,24 @@ pub fn isomorphic(one: (&EmbeddedGraph, Dart), other: (&EmbeddedGraph, Dart)) ->
 /// Whether these pairs of states are a bisimulation that contains the starts of the two worlds: the
 /// states exist, and a marker that cannot be carried stays in its place; in each pair the robots perceive
 /// the same and have the same actions; and each action leads to a pair.
-pub fn is_bisimulation<M: Marker + Clone>(
-    pairs: &[(State, State)],
-    one: &GraphWorld<M>,
-    other: &GraphWorld<M>,
+pub fn is_bisimulation<A: Aid + Clone>(
+    pairs: &[(State<A::Placed>, State<A::Placed>)],
+    one: &GraphWorld<A>,
+    other: &GraphWorld<A>,
 ) -> bool {
-    let exists = |world: &GraphWorld<M>, state: State| {
+    let exists = |world: &GraphWorld<A>, state: &State<A::Placed>| {
         let is_dart = |dart: Dart| dart.at() < world.graph().dart_count();
-        is_dart(state.pose) && state.placed.map_or(world.marker().is_movable(), is_dart)
+        is_dart(state.pose) && world.aid().exists(world.graph(), &state.placed)
     };
     pairs.contains(&(one.state(), other.state()))
-        && pairs.iter().all(|&(here, there)| {
+        && pairs.iter().all(|(here, there)| {
             if !exists(one, here) || !exists(other, there) {
                 return false;
             }
-            let (one, other) = (one.clone().at(here), other.clone().at(there));
-            let can: Vec<_> = one.actions().collect();
+            let (one, other) = (one.clone().at(here.clone()), other.clone().at(there.clone()));
+            let can = one.actions();
             one.sensed() == other.sensed()
-                && can == other.actions().collect::<Vec<_>>()
+                && can == other.actions()
                 && can.into_iter().all(|action| {
                     let (mut one, mut other) = (one.clone(), other.clone());
                     one.act(action).is_ok()

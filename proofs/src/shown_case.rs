@@ -3,9 +3,10 @@
 
 use serde::Serialize;
 use toposlam_model::{
+    aid::{RefusedAction, State},
     format::named_world::NamedWorld,
     percept::{Door, Percept},
-    world::{GraphWorld, RefusedAction, State, World},
+    world::{GraphWorld, World},
 };
 
 use crate::{Exhibit, replay::ReplayedCase};
@@ -72,12 +73,12 @@ impl ReplayedCase {
                     // A lemma shows a world before the walks in it.
                     let Some((label, named)) = worlds.get(world) else { continue };
                     let facing = named.start.unwrap_or(pose);
-                    let robot = GraphWorld::with_marker(&named.graph, marker, facing);
+                    let robot = GraphWorld::with_aid(&named.graph, marker, facing);
                     let start = State { pose, ..robot.state() };
                     let mut robot = robot.at(start);
                     let (mut poses, mut percepts) = (Vec::new(), Vec::new());
                     let mut arrive = |robot: &GraphWorld<_>| {
-                        poses.push(named.state_text(&marker, robot.state()));
+                        poses.push(named.state_text(&marker, &robot.state()));
                         percepts.push(robot.sensed());
                     };
                     arrive(&robot);

@@ -2,12 +2,12 @@
 
 use pyo3::{IntoPyObjectExt, prelude::*};
 use toposlam_model::{
-    ambiguity::{Bisimulation, Comparison, Walk, state_count},
-    embedded_graph::Dart,
+    aid::{Action, Aid, AnyAid, Places, State},
+    ambiguity::{Bisimulation, Comparison, Walk, has_more_states},
+    embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Interrupted,
     isomorphism::{isomorphism, mirror_isomorphism},
-    marker::Marker,
-    world::{Action, State},
+    marker::NoMarker,
 };
 
 use crate::{
@@ -15,11 +15,11 @@ use crate::{
     long_work::{Watcher, run_watched},
     own_marker::OwnMarker,
     percept::Percept,
-    world::{CoreWorld, named_marker},
+    world::{CoreWorld, named_aid},
 };
 
-/// A robot's state: its pose, and the dart that places the marker, or none while the robot carries it.
-type StateNumbers = (u32, Option<u32>);
+/// A robot's state: its pose, and the darts that place its marking aid, none for what it carries.
+type StateNumbers = (u32, Vec<Option<u32>>);
 
 /// The result of a comparison.
 #[derive(IntoPyObject)]
@@ -41,12 +41,12 @@ pub(crate) struct Compared {
 const MOST_PAIRS: usize = 1 << 22;
 
 /// The most states of a world: they are numbered, and take memory accordingly.
-const MOST_STATES: usize = 1 << 26;
+const MOST_STATES: usize = 1 << 24;
 
 /// What the robots can find out.
 struct Answer {
     start_like: Option<Dart>,
-    relation: Option<Vec<(State, State)>>,
+    relation: Option<Vec<(StateNumbers, StateNumbers)>>,
     /// Whether the relation, or the walk, is what it should be.
     verified: bool,
     walk: Option<Walk>,
@@ -64,25 +64,22 @@ pub(crate) fn compare(
     marker: &Bound<'_, PyAny>,
 ) -> PyResult<Compared> {
     let facings = [one.dart(py, facing)?, other.dart(py, other_facing)?];
+    let graphs = [&one.0.graph, &other.0.graph];
+    let sides = [(graphs[0], facings[0]), (graphs[1], facings[1])];
     let own;
-    let kind: &dyn Marker = if let Ok(name) = marker.extract::<String>() {
+    let aid: AnyAid<'_> = if let Ok(name) = marker.extract::<String>() {
         own = None;
-        named_marker(py, &name)?
+        named_aid(py, &name)?.into()
     } else {
         own = Some(OwnMarker::new(marker.clone().unbind()));
-        own.as_ref().map_or(&toposlam_model::marker::NoMarker as &dyn Marker, |own| own)
+        own.as_ref().map_or(NoMarker.into(), |own| AnyAid::Own(own))
     };
-    let graphs = [&one.0.graph, &other.0.graph];
-    if graphs.iter().any(|graph| state_count(graph, kind) > MOST_STATES) {
+    if sides.iter().any(|&(graph, facing)| has_more_states(graph, aid, facing, MOST_STATES)) {
         let text = format!("a world has more than {MOST_STATES} states of robot and marker");
         return Err(error(py, "SizeError", text));
     }
     let on_signal = own.as_ref().map(OwnMarker::stopper);
-    let answer = run_watched(py, None, on_signal, |watcher| {
-        let sides = [(graphs[0], facings[0]), (graphs[1], facings[1])];
-        let comparison = Comparison::new(kind, sides[0], sides[1]);
-        answer(&comparison, kind, sides[1], facings, watcher)
-    })?;
+    let answer = run_watched(py, None, on_signal, |watcher| answer(aid, sides, watcher))?;
     if let Some(failure) = own.as_ref().and_then(OwnMarker::failure) {
         return Err(failure);
     }
@@ -96,16 +93,12 @@ pub(crate) fn compare(
         return Err(error(py, "InternalError", "the relation or the walk is not verified"));
     }
     let same = isomorphism(graphs[0], graphs[1]);
-    let numbers = |state: State| (state.pose.0, state.placed.map(|placed| placed.0));
-    let relation = answer.relation.map(|pairs| {
-        pairs.into_iter().map(|(here, there)| (numbers(here), numbers(there))).collect()
-    });
     Ok(Compared {
         difference: same.as_ref().err().map(ToString::to_string),
         bijection: same.ok().map(|same| same.images().iter().map(|dart| dart.0).collect()),
         mirror: mirror_isomorphism(graphs[0], graphs[1]).is_some(),
         start_like: answer.start_like.map(|start| start.0),
-        relation,
+        relation: answer.relation,
         percepts: answer.walk.as_ref().map(|walk| {
             let [here, there] = walk.percepts;
             (Percept(here), Percept(there))
@@ -115,14 +108,18 @@ pub(crate) fn compare(
 }
 
 fn answer(
-    comparison: &Comparison,
-    marker: &dyn Marker,
-    (graph, other_facing): (&toposlam_model::embedded_graph::EmbeddedGraph, Dart),
-    facings: [Dart; 2],
+    aid: AnyAid<'_>,
+    sides: [(&EmbeddedGraph, Dart); 2],
     watcher: &Watcher,
 ) -> Result<Answer, Interrupted> {
-    // The robot in the second world may begin in any pose that places the marker alike.
-    let mut starts = marker.starts(graph, other_facing);
+    let numbers = |state: State<Places>| {
+        (state.pose.0, state.placed.into_iter().map(|place| place.map(|dart| dart.0)).collect())
+    };
+    let [(_, facing), (graph, other_facing)] = sides;
+    let facings = [facing, other_facing];
+    // The robot in the second world may begin in any pose that places the aid alike.
+    let mut starts = Aid::starts(&aid, graph, other_facing);
+    let comparison = Comparison::new(aid, sides[0], sides[1]);
     starts.sort_by_key(|&start| start != other_facing);
     for start in starts {
         let poses = [facings[0], start];
@@ -130,7 +127,10 @@ fn answer(
             let [here, there] = comparison.starts(poses);
             let verified = found.verify(&here, &there);
             let relation = match found {
-                Bisimulation::Relation(relation) => Some(relation.0),
+                Bisimulation::Relation(relation) => {
+                    let pairs = relation.0.into_iter();
+                    Some(pairs.map(|(here, there)| (numbers(here), numbers(there))).collect())
+                }
                 Bisimulation::Classes(_) => None,
             };
             return Ok(Answer { start_like: Some(start), relation, verified, walk: None });

@@ -7,7 +7,7 @@ use toposlam_conform::{
 };
 use toposlam_logs::topic_map::TopicMap;
 use toposlam_model::{
-    folding::WorldSearch, mapping::MappingAlgorithm, percept::Percept as ModelPercept,
+    folding::WorldSearch, mapping::MappingAlgorithm, marker, percept::Percept as ModelPercept,
     percept::Sighting, trace::AlgorithmCase,
 };
 use toposlam_vision::{
@@ -19,7 +19,7 @@ use crate::{
     log::LogReader,
     long_work::{Watcher, run_watched},
     percept::Percept,
-    world::{CoreWorld, named_marker},
+    world::CoreWorld,
 };
 
 /// Checks a log. Returns what the report contains.
@@ -39,7 +39,9 @@ pub(crate) fn conform<'py>(
     max_darts: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let marker = marker.map(|name| named_marker(py, name)).transpose()?;
+    let known =
+        |name| marker::named(name).map_err(|unknown| error(py, "UnknownMarkerError", unknown));
+    let marker = marker.map(known).transpose()?;
     let doors = match driver {
         "anyone" => DoorChooser::Anyone,
         "algorithm" => DoorChooser::Algorithm(None),

@@ -12,7 +12,7 @@ use crate::{
     error::{error, interrupted},
     long_work::{Watcher, run_watched},
     own_marker::OwnMarker,
-    world::{CoreWorld, named_marker},
+    world::{CoreWorld, named_aid},
 };
 
 /// The sizes searched, each as its number of edges, of placed worlds and of ambiguous ones; and the groups
@@ -48,7 +48,7 @@ pub(crate) fn counterexample(
     let class: Class = class_.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
     let size = |cause| error(py, "SizeError", cause);
     let findings = if let Ok(name) = marker.extract::<String>() {
-        let kind = named_marker(py, &name)?;
+        let kind = named_aid(py, &name)?;
         let search = AmbiguitySearch::new(class, edges, kind).map_err(size)?;
         run_watched(py, progress, None, |watcher| search.run(watcher))?
     } else {

@@ -4,14 +4,14 @@ use pyo3::prelude::*;
 use thiserror::Error;
 use toposlam_draw::story::{PrintedStory, Story};
 use toposlam_model::{
+    aid::{Action, AidAction, AidKind, RefusedAction},
     enumerate::Watch,
     folding,
     format::named_world::NamedWorld,
     isomorphism::Candidate,
     mapping::{FACING, MapWalk, MappingAlgorithm, MappingError, MappingEvent, Observer},
-    marker::Marker,
     percept::{Door, Percept},
-    world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World},
+    world::{AidHandler, GraphWorld, World},
 };
 
 use crate::{
@@ -33,7 +33,7 @@ pub(crate) struct Explored {
 
 /// A world whose robot can be stopped.
 struct StoppableWorld<'g, 'w> {
-    world: GraphWorld<'g, &'static dyn Marker>,
+    world: GraphWorld<'g, AidKind>,
     watcher: &'w Watcher,
 }
 
@@ -60,20 +60,16 @@ impl World for StoppableWorld<'_, '_> {
         Ok(self.world.traverse(door)?)
     }
 
-    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = Halt>> {
+    fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = Halt>> {
         Some(self)
     }
 }
 
-impl MarkerCarrier for StoppableWorld<'_, '_> {
+impl AidHandler for StoppableWorld<'_, '_> {
     type Error = Halt;
 
-    fn pick_up(&mut self) -> Result<(), Halt> {
-        Ok(self.world.pick_up()?)
-    }
-
-    fn drop(&mut self) -> Result<(), Halt> {
-        Ok(MarkerCarrier::drop(&mut self.world)?)
+    fn handle(&mut self, action: AidAction) -> Result<(), Halt> {
+        Ok(self.world.handle(action)?)
     }
 }
 
@@ -112,7 +108,7 @@ pub(crate) fn explore(
         return Err(error(py, "NotSimpleError", text));
     }
     let (mapped, journey, recorder) = run_watched(py, None, None, |watcher| {
-        let marked = GraphWorld::with_marker(&world.graph, algorithm.marker(), facing);
+        let marked = GraphWorld::with_aid(&world.graph, algorithm.aid(), facing);
         let mut robot = StoppableWorld { world: marked, watcher };
         let story = PrintedStory::new(Story::new(world, facing), Some(Vec::new()));
         let mut recorder = Recorder { story, actions: Vec::new() };

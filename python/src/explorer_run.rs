@@ -6,14 +6,14 @@ use toposlam_draw::{
     page::explorer_page,
 };
 use toposlam_model::{
-    check::other_world as find_other_world, embedded_graph::Dart, folding::SmallestWorld,
-    format::named_world::NamedWorld, percept::Door, world::Action,
+    aid::Action, check::other_world as find_other_world, embedded_graph::Dart,
+    folding::SmallestWorld, format::named_world::NamedWorld, percept::Door,
 };
 
 use crate::{
     error::{error, guarded},
     long_work::run_watched,
-    world::{CoreWorld, named_marker},
+    world::{CoreWorld, named_aid},
 };
 
 /// The smallest other world in which a robot that takes these doors from a start senses the same, and whether it is
@@ -27,7 +27,7 @@ pub(crate) fn other_world(
     doors: Vec<u32>,
 ) -> PyResult<Option<(CoreWorld, bool)>> {
     let facing = world.dart(py, facing)?;
-    let marker = named_marker(py, marker)?;
+    let marker = named_aid(py, marker)?;
     let doors: Vec<Door> = doors.into_iter().map(Door).collect();
     let graph = world.0.graph.clone();
     let found = run_watched(py, None, None, move |watcher| {
@@ -56,7 +56,7 @@ pub(crate) fn explorer_run<'py>(
     beside: Option<(PyRef<'py, CoreWorld>, String)>,
     ending: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let marker = named_marker(py, marker)?;
+    let marker = named_aid(py, marker)?;
     let parsed = actions.iter().map(|action| action.parse::<Action>());
     let actions = parsed.collect::<Result<Vec<_>, _>>();
     let actions = actions.map_err(|unknown| error(py, "InternalError", unknown))?;

@@ -1,7 +1,9 @@
 //! What a robot senses, for Python.
 
-use pyo3::{IntoPyObjectExt, prelude::*};
-use toposlam_model::percept::{Percept as ModelPercept, Sighting};
+use pyo3::{IntoPyObjectExt, prelude::*, types::PyDict};
+use toposlam_model::percept::{
+    OtherRobot, Percept as ModelPercept, Sighting, StringView, TeamView,
+};
 
 /// What a robot senses on arriving at a vertex: its degree, and what the marker adds.
 #[pyclass(frozen, eq, hash, ord, module = "toposlam")]
@@ -17,21 +19,22 @@ impl Percept {
     }
 
     /// What the marker adds: None, or the door along which a directional marker points, or the number of
-    /// undirected markers here, or a word.
+    /// undirected markers here, or a word; of a string a dict with "doors", "fixed_end", "free_end" and "hand";
+    /// of a team a dict with "robots".
     #[getter]
     fn marker(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
-        let word = match self.0.sighting {
+        let words = match self.0.sighting {
             Sighting::Nothing => return Ok(None),
             Sighting::Pointing(door) => return door.0.into_py_any(py).map(Some),
             Sighting::Lying(count) => return count.into_py_any(py).map(Some),
-            Sighting::First => "first",
-            Sighting::Second => "second",
-            Sighting::Both => "both",
-            Sighting::Passed => "passed",
-            Sighting::PassedAlong => "along",
-            Sighting::PassedAgainst => "against",
+            Sighting::These(markers) => markers.names().join("+"),
+            Sighting::Passed => "passed".to_owned(),
+            Sighting::PassedAlong => "along".to_owned(),
+            Sighting::PassedAgainst => "against".to_owned(),
+            Sighting::String(view) => return string(py, view).map(Some),
+            Sighting::Team(view) => return team(py, view).map(Some),
         };
-        word.into_py_any(py).map(Some)
+        words.into_py_any(py).map(Some)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -45,4 +48,38 @@ impl Percept {
     fn __str__(&self) -> String {
         self.0.to_string()
     }
+}
+
+fn string(py: Python<'_>, view: StringView) -> PyResult<Py<PyAny>> {
+    let StringView { doors, fixed_end, free_end, hand } = view;
+    let seen = PyDict::new(py);
+    seen.set_item("doors", doors.doors().map(|door| door.0).collect::<Vec<_>>())?;
+    seen.set_item("fixed_end", fixed_end)?;
+    seen.set_item("free_end", free_end)?;
+    seen.set_item("hand", hand.map(|door| door.0))?;
+    seen.into_py_any(py)
+}
+
+fn team(py: Python<'_>, TeamView(others): TeamView) -> PyResult<Py<PyAny>> {
+    let mut robots = Vec::new();
+    for other in others {
+        let seen = PyDict::new(py);
+        let (place, along) = match other {
+            OtherRobot::Absent => continue,
+            OtherRobot::Elsewhere { degree } => {
+                seen.set_item("degree", degree)?;
+                ("elsewhere", None)
+            }
+            OtherRobot::Here { along } => ("here", along),
+            OtherRobot::WithSecond { along } => ("with-second", along),
+        };
+        seen.set_item("place", place)?;
+        if place != "elsewhere" {
+            seen.set_item("along", along.map(|door| door.0))?;
+        }
+        robots.push(seen);
+    }
+    let seen = PyDict::new(py);
+    seen.set_item("robots", robots)?;
+    seen.into_py_any(py)
 }

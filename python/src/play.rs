@@ -8,7 +8,7 @@ use crate::{
     error::{error, guarded, internal, interrupted},
     long_work::run_watched,
     starts::named_class,
-    world::{CoreWorld, named_marker},
+    world::{CoreWorld, named_aid},
 };
 
 /// The page of a world, from a start and from others.
@@ -19,7 +19,7 @@ pub(crate) fn world_page(
     facing: u32,
     marker: &str,
 ) -> PyResult<String> {
-    let (marker, facing) = (named_marker(py, marker)?, world.dart(py, facing)?);
+    let (marker, facing) = (named_aid(py, marker)?, world.dart(py, facing)?);
     let count = world.0.graph.vertex_count();
     if count > MOST_VERTICES {
         let text = format!("the world has {count} vertices; a page can have {MOST_VERTICES}");
@@ -37,7 +37,7 @@ pub(crate) fn random_page(
     seed: u64,
     marker: &str,
 ) -> PyResult<String> {
-    let marker = named_marker(py, marker)?;
+    let marker = named_aid(py, marker)?;
     let games = games(py, class_, edges, seed)?;
     guarded(py, || Ok(py.detach(|| play_page(&games, marker))))
 }

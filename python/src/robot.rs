@@ -4,28 +4,29 @@ use std::sync::Arc;
 
 use pyo3::{IntoPyObjectExt, prelude::*};
 use toposlam_model::{
+    aid::{Action, AidAction, AidKind, Places, RefusedAction, State},
     check::determines_world,
     embedded_graph::{Dart, EmbeddedGraph},
-    marker::{Marker, NoMarker},
+    marker::NoMarker,
     percept::{Door, Percept as ModelPercept},
-    world::{Action, GraphWorld, RefusedAction, State},
+    world::GraphWorld,
 };
 
 use crate::{
     error::{error, guarded},
     percept::Percept,
-    world::{CoreWorld, named_marker},
+    world::{CoreWorld, named_aid},
 };
 
 /// A robot that senses and moves in a world, and nothing else. It counts its moves.
 #[pyclass(module = "toposlam")]
 pub(crate) struct Robot {
     graph: Arc<EmbeddedGraph>,
-    marker: &'static dyn Marker,
+    marker: AidKind,
     /// What it senses at each pose, if a function in Python computed that. Then there is no other marker.
     percepts: Option<Vec<Py<PyAny>>>,
     facing: Dart,
-    state: State,
+    state: State<Places>,
     sensed: ModelPercept,
     /// The most moves, pick-ups and drops.
     bound: usize,
@@ -49,11 +50,11 @@ impl Robot {
         let py = marker.py();
         let (marker, percepts) = match marker.extract::<Vec<Py<PyAny>>>() {
             Ok(percepts) if percepts.len() == graph.dart_count() => {
-                (&NoMarker as &dyn Marker, Some(percepts))
+                (NoMarker.into(), Some(percepts))
             }
-            _ => (named_marker(py, &marker.extract::<String>()?)?, None),
+            _ => (named_aid(py, &marker.extract::<String>()?)?, None),
         };
-        let world = GraphWorld::with_marker(&graph, marker, facing);
+        let world = GraphWorld::with_aid(&graph, marker, facing);
         let (state, sensed) = (world.state(), world.sensed());
         Ok(Self {
             graph,
@@ -83,7 +84,7 @@ impl Robot {
         }
         let door = |action: &Action| match action {
             Action::Take(door) => Some(*door),
-            Action::PickUp | Action::Drop => None,
+            Action::Do(_) => None,
         };
         let doors: Vec<Door> = self.actions.iter().filter_map(door).collect();
         determines_world((&self.graph, self.facing), self.marker, &doors)
@@ -119,12 +120,11 @@ impl Robot {
             let refused = RefusedAction::OutOfMoves { bound: self.bound as u64 };
             return Err(error(py, class_of(&refused), refused));
         }
-        // `with_marker` places the marker; the state is the robot's own.
-        let mut world =
-            GraphWorld::with_marker(&self.graph, self.marker, self.state.pose).at(self.state);
+        let world = GraphWorld::with_aid(&self.graph, self.marker, self.state.pose);
+        let mut world = world.at(self.state.clone());
         world.act(action).map_err(|refused| error(py, class_of(&refused), refused))?;
         (self.state, self.sensed) = (world.state(), world.sensed());
-        self.moves += u64::from(matches!(action, Action::Take(_)));
+        self.moves += action.moves();
         self.actions.push(action);
         Ok(())
     }
@@ -136,6 +136,9 @@ fn class_of(refused: &RefusedAction) -> &'static str {
         RefusedAction::NoSuchDoor { .. } => "NoSuchDoorError",
         RefusedAction::NothingToPickUp | RefusedAction::NothingToDrop => "NoMarkerError",
         RefusedAction::OutOfMoves { .. } => "OutOfMovesError",
+        RefusedAction::StringTooShort
+        | RefusedAction::TooManyDoors { .. }
+        | RefusedAction::NotOfThisAid { .. } => "NotPossibleError",
         // Of a world that is decided while a robot explores, which this one is not.
         RefusedAction::NoWorldLeft => "ExplorerError",
     }
@@ -190,12 +193,21 @@ impl Robot {
 
     /// Picks the marker up here, to carry it.
     fn pick_up(&mut self, py: Python<'_>) -> PyResult<()> {
-        self.attempt(py, |robot| robot.act(py, Action::PickUp))
+        self.attempt(py, |robot| robot.act(py, Action::Do(AidAction::PickUp)))
     }
 
     /// Drops the marker here.
     fn drop(&mut self, py: Python<'_>) -> PyResult<()> {
-        self.attempt(py, |robot| robot.act(py, Action::Drop))
+        self.attempt(py, |robot| robot.act(py, Action::Do(AidAction::Drop)))
+    }
+
+    /// Does an action with the marking aid, as "pick-up-2" or "send-2:1", and returns what the robot senses then.
+    #[pyo3(name = "act")]
+    fn act_aid(&mut self, py: Python<'_>, action: &str) -> PyResult<Py<PyAny>> {
+        let action: AidAction =
+            action.parse().map_err(|unknown| error(py, "UnknownActionError", unknown))?;
+        self.attempt(py, |robot| robot.act(py, Action::Do(action)))?;
+        self.percept(py)
     }
 
     /// Ends its run.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use pyo3::{prelude::*, types::PyBytes};
 use toposlam_draw::picture::{Placement, WorldPicture, png, side_by_side, svg};
 use toposlam_model::{
+    aid::{self, AidKind},
     embedded_graph::{Dart, EmbeddedGraph, GraphError},
     format::{
         dot,
@@ -13,7 +14,6 @@ use toposlam_model::{
         world_file::{self, WorldFileErrorKind},
     },
     isomorphism::{Bijection, canonical, code, discovery_order},
-    marker::{self, Marker},
 };
 
 use crate::error::{error, guarded};
@@ -137,7 +137,7 @@ impl CoreWorld {
 
     #[getter]
     fn marker(&self) -> Option<&'static str> {
-        self.0.marker.map(Marker::name)
+        self.0.marker.map(AidKind::name)
     }
 
     #[getter]
@@ -233,7 +233,7 @@ impl CoreWorld {
 
     /// A picture as an SVG document.
     fn svg(&self, py: Python<'_>, title: &str, caption: &str, marker: &str) -> PyResult<String> {
-        let kind = named_marker(py, marker)?;
+        let kind = named_aid(py, marker)?;
         let placement = Placement::from(&self.0);
         let picture =
             WorldPicture { title, caption, marker: kind, placement, ..WorldPicture::from(&self.0) };
@@ -272,9 +272,9 @@ pub(crate) fn is_name(text: &str) -> bool {
     world_file::is_name(text)
 }
 
-/// The kind of marker with this name.
-pub(crate) fn named_marker(py: Python<'_>, name: &str) -> PyResult<&'static dyn Marker> {
-    marker::named(name).map_err(|unknown| error(py, "UnknownMarkerError", unknown))
+/// The marking aid with this name.
+pub(crate) fn named_aid(py: Python<'_>, name: &str) -> PyResult<AidKind> {
+    aid::named(name).map_err(|unknown| error(py, "UnknownMarkerError", unknown))
 }
 
 /// The graph of doors: degrees, and for each door, vertex by vertex, the other end of its edge.

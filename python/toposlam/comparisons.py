@@ -41,7 +41,7 @@ class Comparison:
     """The start of the other world that is indistinguishable from that of the one."""
     relation: tuple[tuple[Dart, Dart], ...] | None
     """All pairs of poses in which two robots that do the same can be, if they never sense a difference. It
-    proves that, and was verified. With a movable marker, a pair of poses may occur several times."""
+    proves that, and was verified. With an aid that moves, a pair of poses may occur several times."""
     walk: Walk | None
     """The shortest walk that distinguishes the worlds, if there is one. It was verified."""
 

@@ -189,6 +189,14 @@ class NoMarkerError(ExplorerError):
     """An explorer picked up a marker that is not there, or dropped one that it does not carry."""
 
 
+class UnknownActionError(ExplorerError, ValueError):
+    """A text is no action of a robot."""
+
+
+class NotPossibleError(ExplorerError):
+    """A marking aid does not have an action, or its string is too short."""
+
+
 class LimitError(ExplorerError):
     """An explorer reached a limit. Whether it would have ended well is not known."""
 

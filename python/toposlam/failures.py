@@ -124,10 +124,8 @@ def _percepts(world: World, marker: Marker, actions: Sequence[Union[int, str]]) 
     for action in actions:
         if isinstance(action, int):
             robot.go(action)
-        elif action == "pick-up":
-            robot.pick_up()
         else:
-            robot.drop()
+            robot.act(action)
         percepts.append(robot.percept)
     return tuple(percepts)
 

@@ -21,8 +21,22 @@ MARKERS = (
     "two-identical",
     "two-distinct",
     "movable",
+    "movable-2",
+    "movable-3",
+    "movable-4",
+    "movable-2-distinct",
+    "movable-3-distinct",
+    "movable-4-distinct",
+    "movable-directional",
+    "string-1",
+    "string-2",
+    "string-3",
+    "team-2",
+    "team-2-round",
+    "team-3",
+    "team-3-round",
 )
-"""The names of the kinds of markers."""
+"""The names of the marking aids."""
 
 MarkerFunction = Callable[[Dart, World], Hashable]
 """A kind of marker: from a robot's pose, and the world whose start places the marker, to what it adds to the

@@ -458,7 +458,8 @@ class World:
         It makes at most `max_moves` moves, pick-ups and drops.
 
         Raises `NoStartError`, `UnknownMarkerError`, `MarkerFunctionError` or `SizeError`; the robot raises
-        `NoSuchDoorError`, `DoorTypeError`, `NoMarkerError` or `OutOfMovesError` if an action is not possible.
+        `NoSuchDoorError`, `DoorTypeError`, `NoMarkerError`, `UnknownActionError`, `NotPossibleError` or
+        `OutOfMovesError` if an action is not possible.
 
         >>> import toposlam as ts
         >>> robot = ts.World.load("worlds/figure-1a.toml").robot()

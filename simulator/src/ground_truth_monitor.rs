@@ -5,11 +5,12 @@ use std::fmt;
 
 use toposlam_logs::record::{Event, EventKind, RunObserver};
 use toposlam_model::{
+    aid::State,
     driving::{algorithm2::JunctionState, odometry::Odometry, pose::Pose, scene::wrapped},
     embedded_graph::{Dart, Vertex},
     floor_plan::FloorPlan,
     percept::{Door, Percept},
-    world::{GraphWorld, State, World},
+    world::{GraphWorld, World},
 };
 use toposlam_vision::geometry::{distance, nearest};
 

@@ -18,12 +18,12 @@ use std::{
 };
 
 use toposlam_model::{
+    aid::AidKind,
     check::{Check, FinishedUnits, Shard, SharedPrefixCheck, Tally, WorstStart},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
     format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
-    marker::Marker,
 };
 
 use super::{
@@ -110,14 +110,15 @@ pub(super) struct CheckArguments {
     #[arg(long)]
     class: Option<Class>,
 
-    /// The robot's marker: directional (Algorithm 1) or movable; any kind with --explorer
+    /// The robot's marking aid: directional (Algorithm 1) or movable; any kind with --explorer
     #[arg(
         long,
+        visible_alias = "aid",
         default_value = "directional",
         value_name = "KIND",
         value_parser = marker_kind
     )]
-    marker: &'static dyn Marker,
+    marker: AidKind,
 
     /// The algorithm that maps with the directional marker: algorithm1 or folding
     #[arg(long, default_value = "algorithm1", hide_possible_values = true, value_parser = algorithms())]
@@ -538,7 +539,7 @@ impl CheckArguments {
                     version: version().to_owned(),
                     class: self.class().name().to_owned(),
                     edges,
-                    marker: algorithm.marker().name().to_owned(),
+                    marker: algorithm.aid().name().to_owned(),
                     algorithm: algorithm.info().title.to_owned(),
                     shard: self.shard.to_string(),
                     // A count that stops early would be wrong.
@@ -585,7 +586,7 @@ impl CheckArguments {
     }
 
     fn class(&self) -> Class {
-        let usual = if self.marker.is_movable() { Class::Simple } else { Class::Multigraph };
+        let usual = if self.marker.moves() { Class::Simple } else { Class::Multigraph };
         self.class.unwrap_or(usual)
     }
 
@@ -611,7 +612,7 @@ impl CheckArguments {
             _ if self.explorer.explorer.is_some() => {
                 Enumeration::new(Each::World, class, edges).map(Work::Enumerated)
             }
-            _ if self.marker.is_movable() && !class.is_simple() => {
+            _ if self.marker.moves() && !class.is_simple() => {
                 let cause = movable_not_sufficient(format!("class {class}"));
                 return Err(CliError::at("--class", cause));
             }

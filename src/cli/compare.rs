@@ -8,11 +8,12 @@ use std::{io::Write, path::PathBuf};
 
 use serde_json::{Map, Value, json};
 use toposlam_model::{
+    aid::Action,
+    aid::{Aid, AidKind},
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     isomorphism::{Bijection, Difference, isomorphism, mirror_isomorphism},
-    marker::{self, Marker},
-    world::Action,
+    marker::{self},
 };
 
 use super::{
@@ -61,9 +62,9 @@ pub(super) struct CompareArguments {
     /// Another world file
     b: PathBuf,
 
-    /// Kind of marker [default: directional, if both worlds have a start]
-    #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
-    marker: Option<&'static dyn Marker>,
+    /// Marking aid [default: directional, if both worlds have a start]
+    #[arg(long, visible_alias = "aid", value_name = "KIND", value_parser = marker_kinds())]
+    marker: Option<AidKind>,
 
     /// Where the robot starts in A; a second --start is for B [default: the starts in the files]
     #[arg(long, value_name = "VERTEX:FACING")]
@@ -158,15 +159,12 @@ impl CompareArguments {
         let startless = named.clone().find(|(_, world)| world.start.is_none());
         let marker = match (self.marker, startless) {
             (None, Some(_)) => return Ok(None),
-            (None, None) => &marker::Directional,
+            (None, None) => marker::Directional.into(),
             (Some(marker), Some((path, world)))
                 if !marker.parts(&world.graph, Dart(0)).is_empty() =>
             {
-                let cause = format!(
-                    "there is no [start] that places the {} marker; give --start twice, first for \
-                     A and then for B",
-                    marker.name()
-                );
+                let cause = "there is no [start] that places the marking aid; give --start twice, \
+                             first for A and then for B";
                 return Err(CliError::in_file(path, cause));
             }
             (Some(marker), _) => marker,

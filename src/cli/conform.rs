@@ -26,7 +26,7 @@ use toposlam_model::{
     folding::WorldSearch,
     format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
-    marker::{self, Directional, Marker, NoMarker, Undirected},
+    marker::{self, Directional, MarkerKind, NoMarker, Undirected},
     trace::AlgorithmCase,
 };
 
@@ -99,7 +99,7 @@ pub(super) struct ConformArguments {
     start: Option<String>,
     /// The robot's marker [default: from the log, or else directional]
     #[arg(long, value_name = "MARKER", value_parser = robot_marker())]
-    marker: Option<&'static dyn Marker>,
+    marker: Option<MarkerKind>,
     /// For events inferred from laser scans: check the log as if a marker had lain at the place that --topics
     /// gives, or else at the first junction that the robot visited, along its entry door
     #[arg(long)]
@@ -185,8 +185,8 @@ fn evidence() -> impl TypedValueParser<Value = Evidence> {
 }
 
 /// Parses the name of the marker of a robot whose log is checked.
-fn robot_marker() -> impl TypedValueParser<Value = &'static dyn Marker> {
-    let kinds: [&dyn Marker; 3] = [&Directional, &Undirected, &NoMarker];
+fn robot_marker() -> impl TypedValueParser<Value = MarkerKind> {
+    let kinds = [Directional, Undirected, NoMarker];
     let kinds = kinds.map(|kind| PossibleValue::new(kind.name()).help(kind.about()));
     PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
 }

@@ -9,9 +9,9 @@ use std::{io::Write, path::PathBuf, time::Instant};
 
 use clap::ValueEnum;
 use toposlam_model::{
+    aid::{AIDS, AidKind, FEW_STATES},
     ambiguity::{AmbiguitySearch, Findings, KeptPairs, SearchError, Unfinished},
     enumerate::Class,
-    marker::{MARKERS, Marker},
 };
 
 use super::{
@@ -60,9 +60,9 @@ The smallest pair is the one whose larger world is smallest. A world is ambiguou
     _ => option,
 }))]
 pub(super) struct CounterexampleArguments {
-    /// Kind of marker (repeatable) [default: every kind]
-    #[arg(long = "marker", value_name = "KIND", value_parser = marker_kinds())]
-    markers: Vec<&'static dyn Marker>,
+    /// Marking aid (repeatable) [default: the fixed markers and movable]
+    #[arg(long = "marker", visible_alias = "aid", value_name = "KIND", value_parser = marker_kinds())]
+    markers: Vec<AidKind>,
 
     /// Class of worlds: multigraph, simple, corridor or planar
     #[arg(long, default_value = "simple")]
@@ -135,14 +135,16 @@ impl CounterexampleArguments {
         }
         let edges = self.max_edges.unwrap_or_else(|| usual_size(self.class));
         // Each marker once, in the order of the list.
-        let wanted =
-            |marker: &&dyn Marker| self.markers.is_empty() || self.markers.contains(marker);
+        let wanted = |aid: &AidKind| {
+            let named = if self.markers.is_empty() { FEW_STATES } else { &self.markers };
+            named.contains(aid)
+        };
         let search = |marker| {
             let search = AmbiguitySearch::new(self.class, edges, marker);
             Ok((marker, search.map_err(|error| CliError::at("--max-edges", error))?))
         };
-        let searches = MARKERS.into_iter().filter(wanted).map(search);
-        let searches: Vec<(&dyn Marker, _)> = searches.collect::<Result<_, CliError>>()?;
+        let searches = AIDS.into_iter().filter(wanted).map(search);
+        let searches: Vec<(AidKind, _)> = searches.collect::<Result<_, CliError>>()?;
         output::check_place(&self.html, &["html", "htm"])?;
         if self.html.is_some() && searches.len() != 1 {
             let cause = "a page shows one marker; choose it with --marker";
@@ -156,8 +158,8 @@ impl CounterexampleArguments {
         }
         let out = &mut SharedOutput::new(out, is_first);
         let has_page = self.html.is_some();
-        let mut report =
-            SearchReport::new(out, self.json, self.class, edges, searches.len(), has_page);
+        let aids = searches.iter().map(|(aid, _)| *aid);
+        let mut report = SearchReport::new(out, self.json, self.class, edges, aids, has_page);
         let mut outcome = Outcome::Holds;
         let mut cases = Vec::new();
         // A file with a world of a pair.
@@ -225,10 +227,10 @@ impl CounterexampleArguments {
     /// Connects to the other processes, if there are others.
     fn join_cluster<'m>(
         &self,
-        markers: impl Iterator<Item = &'m dyn Marker>,
+        markers: impl Iterator<Item = AidKind>,
         edges: usize,
     ) -> Result<Option<Box<dyn ClusterSession>>, CliError> {
-        let markers: Vec<_> = markers.map(Marker::name).collect();
+        let markers: Vec<_> = markers.map(AidKind::name).collect();
         let settings = [
             ("the command", "counterexample".to_owned()),
             ("the class", self.class.name().to_owned()),
@@ -242,12 +244,7 @@ impl CounterexampleArguments {
     }
 
     /// The result for a marker, for CI systems.
-    fn ci_case(
-        &self,
-        marker: &dyn Marker,
-        edges: usize,
-        pairs: Result<usize, &Unfinished>,
-    ) -> CiCase {
+    fn ci_case(&self, marker: AidKind, edges: usize, pairs: Result<usize, &Unfinished>) -> CiCase {
         let (outcome, message) = match pairs {
             Ok(0) => (Outcome::Holds, "no two worlds are indistinguishable".to_owned()),
             Ok(_) => (Outcome::Violated, "there are worlds that no walk distinguishes".to_owned()),
@@ -256,7 +253,7 @@ impl CounterexampleArguments {
         CiCase { name: self.case_name(marker, edges), outcome, message, file: None, seconds: None }
     }
 
-    fn case_name(&self, marker: &dyn Marker, edges: usize) -> String {
+    fn case_name(&self, marker: AidKind, edges: usize) -> String {
         format!("{}, class {}, {}", marker.name(), self.class, up_to(edges))
     }
 }
@@ -268,7 +265,7 @@ fn run_search(
     kept: KeptPairs,
     progress: &Progress,
 ) -> Result<Result<Findings, Unfinished>, CliError> {
-    match search.run_sorted(memory::sorter(memory, search)?, kept, progress) {
+    match search.run_sorted(memory::sorter(memory)?, kept, progress) {
         Ok(findings) => Ok(Ok(findings)),
         Err(SearchError::Sorter(cause)) => Err(CliError::at("--memory", cause)),
         Err(SearchError::Unfinished(unfinished)) => Ok(Err(unfinished)),

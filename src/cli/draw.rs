@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use toposlam_model::marker::Marker;
+use toposlam_model::aid::AidKind;
 
 use super::{CliError, Outcome, exit_codes::help_end, input, marker_kinds, output, write_drawing};
 use view::ViewOptions;
@@ -38,7 +38,7 @@ pub(super) struct DrawArguments {
     /// Kind of marker [default: the one in the file, or else directional; with --pose, none]. With --pose, a
     /// directional one lies at the plan's start, along the facing hallway, or, without a start, at the first L
     #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
-    marker: Option<&'static dyn Marker>,
+    marker: Option<AidKind>,
     /// The file to write: .svg, .png or .dot [default: standard output, as SVG]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,

@@ -11,11 +11,11 @@ use std::{
 
 use clap::ValueEnum;
 use toposlam_model::{
+    aid::Action,
+    aid::AidKind,
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     mapping::{DEFAULT_DART_BOUND, MappingAlgorithm, MappingEvent, MappingMethod, Observer},
-    marker::Marker,
-    world::Action,
 };
 
 use super::{
@@ -92,9 +92,9 @@ pub(super) struct ExploreArguments {
     #[arg(long, default_value = "algorithm1", hide_possible_values = true, value_parser = algorithms())]
     algorithm: MappingAlgorithm,
 
-    /// The robot's marker: directional or movable; any kind with --explorer
-    #[arg(long, default_value = "directional", value_name = "KIND", value_parser = marker_kind)]
-    marker: &'static dyn Marker,
+    /// The robot's marking aid: directional or movable; any kind with --explorer
+    #[arg(long, visible_alias = "aid", default_value = "directional", value_name = "KIND", value_parser = marker_kind)]
+    marker: AidKind,
 
     /// Runs: default, or all to also try every choice that Algorithm 1 leaves open; with all=N, stop at more
     /// than N states, between rounds (line 4) and within (line 8), instead of 1000000

@@ -3,28 +3,29 @@
 use std::{fmt::Display, path::Path};
 
 use toposlam_model::{
+    aid::{self, AidKind},
     embedded_graph::EmbeddedGraph,
     mapping::MappingAlgorithm,
-    marker::{self, Directional, Marker},
+    marker::Directional,
 };
 
 use super::{CliError, RunChoices};
 
 /// Parses the name of a marker that an algorithm maps with.
-pub(super) fn mapping_marker(name: &str) -> Result<&'static dyn Marker, String> {
-    let mut markers = MappingAlgorithm::ALL.iter().map(|algorithm| algorithm.marker());
+pub(super) fn mapping_marker(name: &str) -> Result<AidKind, String> {
+    let mut markers = MappingAlgorithm::ALL.iter().map(|algorithm| algorithm.aid());
     markers
         .find(|marker| marker.name() == name)
         .ok_or_else(|| format!("no algorithm maps with `{name}`; choose directional or movable"))
 }
 
 /// Parses the name of a kind of marker. For a name that no marker has, the error lists those of the algorithms.
-pub(super) fn marker_kind(name: &str) -> Result<&'static dyn Marker, String> {
-    marker::named(name).or_else(|_| mapping_marker(name))
+pub(super) fn marker_kind(name: &str) -> Result<AidKind, String> {
+    aid::named(name).or_else(|_| mapping_marker(name))
 }
 
 /// Whether the marker is that of Algorithm 1, for which there are certificates.
-pub(super) fn is_directional(marker: &dyn Marker) -> bool {
+pub(super) fn is_directional(marker: AidKind) -> bool {
     marker.name() == Directional.name()
 }
 
@@ -34,15 +35,15 @@ pub(super) fn is_directional(marker: &dyn Marker) -> bool {
 /// Returns an error if the algorithm needs another marker, or cannot make all choices.
 pub(super) fn algorithm_for(
     asked: MappingAlgorithm,
-    marker: &dyn Marker,
+    marker: AidKind,
     choices: RunChoices,
 ) -> Result<MappingAlgorithm, CliError> {
     let mut known = [asked].into_iter().chain(MappingAlgorithm::ALL.iter().copied());
-    let found = known.find(|algorithm| algorithm.marker().name() == marker.name());
+    let found = known.find(|algorithm| algorithm.aid().name() == marker.name());
     let cause = || mapping_marker(marker.name()).err().unwrap_or_default();
     let found = found.ok_or_else(|| CliError::at("--marker", cause()))?;
     if found != asked && asked != MappingAlgorithm::default() {
-        let cause = format!("{} maps with --marker {}", asked.in_words(), asked.marker().name());
+        let cause = format!("{} maps with --marker {}", asked.in_words(), asked.aid().name());
         return Err(CliError::at("--algorithm", cause));
     }
     if choices != RunChoices::Default && !is_directional(marker) {
@@ -56,12 +57,12 @@ pub(super) fn algorithm_for(
 /// # Errors
 /// Returns an error if the marker is movable and a world has loops or parallel edges.
 pub(super) fn check_worlds(
-    marker: &dyn Marker,
+    marker: AidKind,
     path: &Path,
     graphs: &[EmbeddedGraph],
 ) -> Result<(), CliError> {
     match graphs.iter().position(|graph| !graph.is_simple()) {
-        Some(index) if marker.is_movable() => {
+        Some(index) if marker.moves() => {
             let world = format!("world {}", index + 1);
             Err(CliError::in_file(path, movable_not_sufficient(world)))
         }

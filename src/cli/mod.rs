@@ -42,9 +42,9 @@ use clap::{
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 use toposlam_model::{
+    aid::{self, AIDS, AidKind, FEW_STATES},
     check::{DEFAULT_STATE_BUDGET, RunChoices},
     format::named_world::NamedWorld,
-    marker::{self, MARKERS, Marker},
 };
 use toposlam_simulator::options::{appearance, noise, robot_sensor};
 use toposlam_terminal::{
@@ -115,10 +115,16 @@ fn run_choices(text: &str) -> Result<RunChoices, String> {
         .ok_or_else(|| "write default, all, or all=N with a number of states".to_owned())
 }
 
-/// Parses the name of a kind of marker. `--help` and errors list all kinds.
-fn marker_kinds() -> impl TypedValueParser<Value = &'static dyn Marker> {
-    let kinds = MARKERS.map(|marker| PossibleValue::new(marker.name()).help(marker.about()));
-    PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
+/// Parses the name of a marking aid. `--help` and errors list all of them.
+fn marker_kinds() -> impl TypedValueParser<Value = AidKind> {
+    let kinds = AIDS.map(|aid| PossibleValue::new(aid.name()).help(aid.about()));
+    PossibleValuesParser::new(kinds).try_map(|name| aid::named(&name))
+}
+
+/// Parses the name of a marking aid that the pages know.
+fn page_aids() -> impl TypedValueParser<Value = AidKind> {
+    PossibleValuesParser::new(FEW_STATES.iter().map(|aid| aid.name()))
+        .try_map(|name| aid::named(&name))
 }
 
 /// Writes a drawing as PNG or SVG, by the ending of the file.

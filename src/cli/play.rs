@@ -5,16 +5,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use toposlam_model::{
-    enumerate::Class,
-    format::named_world::NamedWorld,
-    marker::{self, Marker},
-};
+use toposlam_model::{aid::AidKind, enumerate::Class, format::named_world::NamedWorld};
 
 use super::{
     CliError, Outcome,
     exit_codes::help_end,
-    input, output,
+    input, output, page_aids,
     progress::{Progress, StopSignal},
     text::vertices,
 };
@@ -46,8 +42,8 @@ pub(super) struct PlayArguments {
     world: Option<PathBuf>,
     /// The marker: none, undirected, directional, undirected-edge, directed-edge, two-identical, two-distinct or
     /// movable
-    #[arg(long, default_value = "directional", value_name = "KIND", value_parser = marker::named)]
-    marker: &'static dyn Marker,
+    #[arg(long, visible_alias = "aid", default_value = "directional", value_name = "KIND", value_parser = page_aids())]
+    marker: AidKind,
     /// Number of edges of a random world, from 1 to 8
     #[arg(
         long,

@@ -2,7 +2,12 @@
 
 use std::path::Path;
 
-use toposlam_model::{ambiguity::state_count, format::named_world::NamedWorld, marker::Marker};
+use toposlam_model::{
+    aid::{AidKind, FEW_STATES},
+    ambiguity::has_more_states,
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+};
 
 use super::{CliError, output, text::grouped};
 use crate::page::{WalkPage, page};
@@ -24,13 +29,18 @@ pub(crate) fn write(path: &Path, content: &WalkPage) -> Result<(), CliError> {
 pub(super) fn check_states(
     path: &Path,
     world: &NamedWorld,
-    marker: &dyn Marker,
+    marker: AidKind,
 ) -> Result<(), CliError> {
-    let states = state_count(&world.graph, marker);
-    if states <= MOST_STATES {
+    if !FEW_STATES.contains(&marker) {
+        let known: Vec<_> = FEW_STATES.iter().map(|aid| aid.name()).collect();
+        let cause = format!("a page shows no {}; it shows {}", marker.name(), known.join(", "));
+        return Err(CliError::at("--html", cause));
+    }
+    let start = world.start.unwrap_or(Dart(0));
+    if !has_more_states(&world.graph, marker, start, MOST_STATES) {
         return Ok(());
     }
-    let [states, most] = [states, MOST_STATES].map(|count| grouped(count as u128));
-    let cause = format!("{} has {states} states; a page can show at most {most}", world.name);
+    let most = grouped(MOST_STATES as u128);
+    let cause = format!("{} has more than the {most} states that a page can show", world.name);
     Err(CliError::in_file(path, cause))
 }

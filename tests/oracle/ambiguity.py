@@ -6,7 +6,10 @@ table, which is refined until nothing changes. Needs nothing but Python's own li
 
     python3 tests/oracle/ambiguity.py simple 6                  every kind of marker, up to 6 edges
     python3 tests/oracle/ambiguity.py simple 6 none movable     only these kinds
+    python3 tests/oracle/ambiguity.py simple 4 string-2 team-2  more aids that move, only if named
     python3 tests/oracle/ambiguity.py --check 4                 this program against itself
+    python3 tests/oracle/ambiguity.py --walks multigraph 2 string-1
+                                                                lengths of distinguishing walks
 
 For each kind and each number of edges it prints `KIND m placed_worlds ambiguous`, then
 `KIND smallest M K`: the edges of the two worlds of the smallest ambiguous pair, the larger first
@@ -16,7 +19,8 @@ other, every sequence of actions gives the same percepts. How many embedded grap
 to stderr.
 
 `--check N` takes the sizes up to N a second way: the embedded graphs from all ways to pair the ends
-of the edges, and the ambiguous worlds by walking in two worlds at once, for every pair of them.
+of the edges, and the ambiguous worlds by walking in two worlds at once, for every pair of them. The
+aids that are only taken if named are checked up to two edges.
 """
 
 import sys
@@ -24,6 +28,12 @@ from collections import namedtuple
 
 KINDS = ["none", "undirected", "directional", "undirected-edge", "directed-edge",
          "two-identical", "two-distinct", "movable"]
+# Aids that are only taken if named. Where they are at the start: at a vertex, or along a dart.
+AIDS_AT_VERTEX = ["movable-2", "movable-3", "movable-4",
+                  "movable-2-distinct", "movable-3-distinct", "movable-4-distinct",
+                  "string-1", "string-2", "string-3"]
+AIDS_ALONG_DART = ["movable-directional", "team-2", "team-2-round", "team-3", "team-3-round"]
+AIDS = AIDS_AT_VERTEX + AIDS_ALONG_DART
 CLASSES = ["multigraph", "simple", "corridor", "planar"]
 
 # Embedded graphs with 1, 2, 3, ... edges: OEIS A170946, and A006394 (simple, planar).
@@ -172,9 +182,9 @@ def place_of(kind, graph, facing):
     vertex, other = vertices_by_dart(graph), graph[0][facing]
     if kind == "none":
         return ()
-    if kind in ("undirected", "movable"):
+    if kind in ("undirected", "movable", *AIDS_AT_VERTEX):
         return vertex[facing]
-    if kind in ("directional", "directed-edge"):
+    if kind in ("directional", "directed-edge", *AIDS_ALONG_DART):
         return facing
     if kind == "undirected-edge":
         return tuple(sorted([facing, other]))
@@ -186,9 +196,9 @@ def place_of(kind, graph, facing):
 
 
 def moved(kind, place, number):
-    if kind in ("directional", "directed-edge"):
+    if kind in ("directional", "directed-edge", *AIDS_ALONG_DART):
         return number[place]
-    if kind in ("none", "undirected", "movable", "undirected-edge"):
+    if kind in ("none", "undirected", "movable", "undirected-edge", *AIDS_AT_VERTEX):
         return tuple(sorted(number[dart] for dart in place))
     ends = [tuple(sorted(number[dart] for dart in end)) for end in place]
     return tuple(sorted(ends) if kind == "two-identical" else ends)
@@ -215,9 +225,9 @@ def start_poses(kind, graph, facing):
     vertex, other = vertices_by_dart(graph), graph[0][facing]
     if kind == "none":
         return set(range(len(vertex)))
-    if kind in ("undirected", "movable", "two-distinct"):
+    if kind in ("undirected", "movable", "two-distinct", *AIDS_AT_VERTEX):
         return set(vertex[facing])
-    if kind == "directional":
+    if kind in ("directional", *AIDS_ALONG_DART):
         return {facing}
     if kind in ("undirected-edge", "directed-edge"):
         return {facing, other}
@@ -226,9 +236,29 @@ def start_poses(kind, graph, facing):
     raise ValueError(kind)
 
 
+def start_states(kind, world):
+    """Poses; with an aid that moves, poses and the state of the aid."""
+    graph, facing = world.graph, world.facings[0]
+    poses, here = start_poses(kind, graph, facing), vertices_by_dart(graph)[facing]
+    if kind == "movable":
+        return {(pose, here) for pose in poses}
+    if kind not in AIDS:
+        return poses
+    name, number, _ = aid_parts(kind)
+    if name == "movable":
+        return {(pose, (here,) * number) for pose in poses}
+    if name == "movable-directional":
+        return {(pose, facing) for pose in poses}
+    if name == "string":
+        return {(pose, here, (), True) for pose in poses}
+    return {(pose,) * number for pose in poses}  # a team
+
+
 def states(kind, world):
     """The table of a placed world: for each state its percept and the states to which the actions
     lead, the doors first; and the start states."""
+    if kind in AIDS:
+        return reachable_states(kind, world)
     graph, facing = world.graph, world.facings[0]
     opposite, clockwise = graph
     vertex = vertices_by_dart(graph)
@@ -268,7 +298,7 @@ def states(kind, world):
     poses = range(len(opposite))
     if kind != "movable":
         table = {pose: ((len(vertex[pose]), sighting(pose)), behind_doors(pose)) for pose in poses}
-        return table, start_poses(kind, graph, facing)
+        return table, start_states(kind, world)
 
     table = {}
     for pose in poses:
@@ -281,7 +311,120 @@ def states(kind, world):
                 table[pose, place] = (len(here), "lies here"), walking + [(pose, "carried")]  # pick up
             else:
                 table[pose, place] = (len(here), "nothing"), walking
-    return table, {(pose, first) for pose in start_poses(kind, graph, facing)}
+    return table, start_states(kind, world)
+
+
+# ---------------------------------------------------------------- the aids that move
+# For each a function from a state to its percept and to the states to which the actions lead, always
+# in the same order. A percept shows which actions there are, so equal percepts have the same list.
+# `doors[pose]` are the darts at door 0, door 1, ... of a robot that came in by `pose`.
+
+def aid_parts(kind):
+    """The name of the aid; how many markers, edges' lengths of string, or robots; and its variant."""
+    if kind == "movable-directional":
+        return kind, 1, None
+    name, number, *variant = kind.split("-")
+    return name, int(number), variant[0] if variant else None
+
+
+def all_doors(graph):
+    vertices, which, index = cycles(graph[1])
+    return [vertices[which[pose]][index[pose]:] + vertices[which[pose]][:index[pose]]
+            for pose in range(len(graph[0]))]
+
+
+CARRIED = ()  # the place of a marker that the robot carries: no dart
+
+
+def with_markers(state, opposite, doors, distinct):
+    """The robot's pose and the place of each marker. Of markers that are alike only the number at
+    each place matters, so their places are sorted."""
+    pose, places = state
+    here = tuple(sorted(doors[pose]))
+
+    def with_place(marker, place):
+        changed = places[:marker] + (place,) + places[marker + 1:]
+        return pose, changed if distinct else tuple(sorted(changed))
+
+    lying = [marker for marker, place in enumerate(places) if place == here]
+    carried = [marker for marker, place in enumerate(places) if place == CARRIED]
+    next_states = [(opposite[dart], places) for dart in doors[pose]]
+    if distinct:
+        sighting = tuple(lying), tuple(carried)
+        next_states += [with_place(marker, CARRIED) for marker in lying]
+        next_states += [with_place(marker, here) for marker in carried]
+    else:  # any one of them
+        sighting = len(lying), len(carried)
+        next_states += [with_place(marker, CARRIED) for marker in lying[:1]]
+        next_states += [with_place(marker, here) for marker in carried[:1]]
+    return (len(here), sighting), next_states
+
+
+def with_directional_marker(state, opposite, doors):
+    """The robot's pose and the dart along which the marker points, or "carried"."""
+    pose, along = state
+    next_states = [(opposite[dart], along) for dart in doors[pose]]
+    if along == "carried":
+        return (len(doors[pose]), "carried"), next_states + [(pose, pose)]  # drop
+    if along in doors[pose]:
+        return (len(doors[pose]), doors[pose].index(along)), next_states + [(pose, "carried")]  # pick up
+    return (len(doors[pose]), None), next_states
+
+
+def with_string(state, opposite, doors, length):
+    """The robot's pose; the vertex of the fixed end; the string's way from there, as the darts by
+    which the robot left when it laid it; and whether the robot holds the free end."""
+    pose, fixed, laid, held = state
+    here = tuple(sorted(doors[pose]))
+    far_end = opposite[laid[-1]] if laid else None  # the dart by which the last laid edge comes in
+    free = tuple(sorted(doors[far_end])) if laid else fixed
+    next_states = []
+    for dart in doors[pose]:
+        if not held:
+            next_states.append((opposite[dart], fixed, laid, held))
+        elif dart == far_end:
+            next_states.append((opposite[dart], fixed, laid[:-1], held))  # wound in
+        elif len(laid) < length:
+            next_states.append((opposite[dart], fixed, laid + (dart,), held))
+    if held or here == free:
+        next_states.append((pose, fixed, laid, not held))  # drop, or pick up
+    through = tuple(door for door, dart in enumerate(doors[pose])
+                    if dart in laid or opposite[dart] in laid)
+    from_hand = doors[pose].index(far_end) if held and laid else None
+    sighting = (through, here == fixed, not held and here == free, from_hand,
+                held, length - len(laid))
+    return (len(here), sighting), next_states
+
+
+def with_team(state, opposite, doors, headings):
+    """The poses of all robots, the first robot's first."""
+    def seen(robot):
+        """Together with which robot that comes earlier, and with headings along which of its
+        doors; or else the number of doors."""
+        for earlier in range(robot):
+            if state[robot] in doors[state[earlier]]:
+                door = doors[state[earlier]].index(state[robot]) if headings else None
+                return "with", earlier, door
+        return "elsewhere", len(doors[state[robot]])
+
+    next_states = [state[:robot] + (opposite[dart],) + state[robot + 1:]
+                   for robot, pose in enumerate(state) for dart in doors[pose]]
+    return (len(doors[state[0]]), *map(seen, range(1, len(state)))), next_states
+
+
+def reachable_states(kind, world):
+    name, number, variant = aid_parts(kind)
+    look, more = {"movable": (with_markers, [variant == "distinct"]),
+                  "movable-directional": (with_directional_marker, []),
+                  "string": (with_string, [number]),
+                  "team": (with_team, [variant != "round"])}[name]
+    starts, doors = start_states(kind, world), all_doors(world.graph)
+    table, waiting = {}, list(starts)
+    for state in waiting:
+        if state not in table:
+            table[state] = look(state, world.graph[0], doors, *more)
+            waiting += table[state][1]
+    return table, starts
 
 
 # ---------------------------------------------------------------- indistinguishable worlds
@@ -291,20 +434,20 @@ def classes_of_starts(kind, worlds):
     by the classes to which the actions lead, until there are no more classes than before. Two
     states of one class give the same percepts by every sequence of actions. Answers for each
     placed world the classes of its start states."""
-    percepts, following, starts, shared = [], [], [], {}
+    percepts, following, starts = [], [], []
+    row, row_graph = {}, None
     for world in worlds:
-        # Where a marker can be moved, all placed worlds on a graph have the same states.
-        same = world.graph if kind == "movable" else None
-        if same is None or same not in shared:
-            table, world_starts = states(kind, world)
-            row = {state: len(percepts) + i for i, state in enumerate(table)}
+        # A state of an aid that moves tells, with the graph, all that happens from there on. So a
+        # placed world whose start states are in the last table, of the same graph, has all of its
+        # states there. A string's fixed end stays, so there each placed world has its own states.
+        world_starts = start_states(kind, world)
+        if not ((kind == "movable" or kind in AIDS) and row_graph == world.graph
+                and all(state in row for state in world_starts)):
+            table, _ = states(kind, world)
+            row, row_graph = {state: len(percepts) + i for i, state in enumerate(table)}, world.graph
             for percept, next_states in table.values():
                 percepts.append(percept)
                 following.append([row[state] for state in next_states])
-            shared = {same: row}
-        else:
-            row, world_starts = shared[same], {(pose, vertices_by_dart(world.graph)[world.facings[0]])
-                                               for pose in start_poses(kind, world.graph, world.facings[0])}
         starts.append([row[state] for state in world_starts])
 
     def split(keys):
@@ -336,18 +479,23 @@ def ambiguous(kind, worlds):
     return confused, smallest
 
 
-def distinguishable(one, other, start_one, start_other):
-    """Whether walking in both tables at once comes to percepts that differ."""
-    met, waiting = {(start_one, start_other)}, [(start_one, start_other)]
+def shortest_walk(one, other, start_one, start_other):
+    """The number of actions after which walking in both tables at once comes to percepts that
+    differ; None if it never does."""
+    actions, waiting = {(start_one, start_other): 0}, [(start_one, start_other)]
     for here, there in waiting:
         (percept_here, next_here), (percept_there, next_there) = one[here], other[there]
         if percept_here != percept_there or len(next_here) != len(next_there):
-            return True
+            return actions[here, there]
         for pair in zip(next_here, next_there):
-            if pair not in met:
-                met.add(pair)
+            if pair not in actions:
+                actions[pair] = actions[here, there] + 1
                 waiting.append(pair)
-    return False
+    return None
+
+
+def distinguishable(one, other, start_one, start_other):
+    return shortest_walk(one, other, start_one, start_other) is not None
 
 
 def ambiguous_by_walking(kind, worlds):
@@ -389,14 +537,34 @@ def report(class_name, most_edges, kinds):
         print(kind, "smallest", *(smallest or ["none"]), flush=True)
 
 
+def walks(class_name, most_edges, kinds):
+    """How many pairs of starts have a shortest walk of each length that distinguishes them."""
+    roots = [(graph, root) for graphs in embedded_graphs(class_name, most_edges).values()
+             for graph in graphs for root in range(len(graph[0]))]
+    graphs = sorted({renumbered(graph, root)[0] for graph, root in roots})
+    for kind in kinds:
+        tables = []
+        for graph in graphs:
+            table, starts = states(kind, PlacedWorld(graph, len(graph[0]) // 2, [0]))
+            # A pose, or a pose and the state of the aid.
+            [start] = [state for state in starts if state == 0 or isinstance(state, tuple) and state[0] == 0]
+            tables.append((table, start))
+        lengths = [shortest_walk(one, other, a, b) for i, (one, a) in enumerate(tables)
+                   for other, b in tables[:i]]
+        for length in sorted(set(lengths), key=lambda length: (length is None, length)):
+            print(kind, "never" if length is None else length, lengths.count(length), flush=True)
+
+
 def check(most_edges):
     for class_name in CLASSES:
         by_edges = graphs_checked(class_name, most_edges)
         for edges, graphs in by_edges.items():
             assert graphs == embedded_graphs_by_pairing(class_name, edges), (class_name, edges)
-        for kind in KINDS:
+        for kind in KINDS + AIDS:
             worlds = []
-            for graphs in by_edges.values():
+            for edges, graphs in by_edges.items():
+                if kind in AIDS and edges > 2:
+                    continue
                 for graph in graphs:
                     on_graph = placed_worlds(kind, graph)
                     for world in on_graph:
@@ -412,8 +580,10 @@ def check(most_edges):
 def main(arguments):
     if len(arguments) == 2 and arguments[0] == "--check" and arguments[1].isdigit():
         check(int(arguments[1]))
+    elif len(arguments) > 3 and arguments[0] == "--walks":
+        walks(arguments[1], int(arguments[2]), arguments[3:])
     elif (len(arguments) >= 2 and arguments[0] in CLASSES and arguments[1].isdigit()
-            and int(arguments[1]) >= 1 and all(kind in KINDS for kind in arguments[2:])):
+            and int(arguments[1]) >= 1 and all(kind in KINDS + AIDS for kind in arguments[2:])):
         report(arguments[0], int(arguments[1]), arguments[2:] or KINDS)
     else:
         sys.exit(__doc__)

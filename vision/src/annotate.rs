@@ -248,7 +248,7 @@ mod tests {
     use super::*;
     use crate::colour::Confusion;
 
-    fn l_with_marker() -> Scene {
+    fn l_with_aid() -> Scene {
         let through = [0.5, -0.1];
         let doors = [3.0, -1.7].map(|direction| CentreLine { through, direction }).to_vec();
         let place =
@@ -263,10 +263,10 @@ mod tests {
 
     #[test]
     fn the_entered_edge_is_green_the_other_red_and_the_marker_blue() {
-        let scene_picture = scene(&l_with_marker(), &SensingTrace::default());
+        let scene_picture = scene(&l_with_aid(), &SensingTrace::default());
         let camera = Camera::superscout();
         let image = RgbImage::new(camera.image[0], camera.image[1]);
-        let over = over(&image, &camera, &l_with_marker());
+        let over = over(&image, &camera, &l_with_aid());
         let onwards = |direction: f64| Point2::new(0.5, -0.1) + unit(direction);
         for (point, expected) in [(onwards(3.0), GREEN), (onwards(-1.7), RED)] {
             assert_eq!(colour(&scene_picture, at(point)), expected);
@@ -275,7 +275,7 @@ mod tests {
             assert_eq!(colour(&over, pixel), expected);
         }
         assert_eq!(colour(&scene_picture, at(Point2::new(0.75, -0.13))), BLUE);
-        let corner = rectangle(&l_with_marker().marker.unwrap())[0];
+        let corner = rectangle(&l_with_aid().marker.unwrap())[0];
         let pixel = camera.ground_to_pixel(corner).unwrap().map(|part| part.round() as i32).into();
         assert_eq!(colour(&over, pixel), BLUE);
     }

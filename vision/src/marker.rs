@@ -101,7 +101,7 @@ mod tests {
     use super::*;
     use crate::drawn_place;
 
-    fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
+    fn floor_with_aid(position: [f64; 2], axis: f64) -> GroundView {
         let mut view = GroundView::unseen();
         for index in 0..view.classes.len() {
             let [x, y] = GroundView::ground(index).into();
@@ -120,7 +120,7 @@ mod tests {
     }
 
     fn found(position: [f64; 2], axis: f64, junction: Option<&JunctionView>) -> Option<MarkerView> {
-        let view = floor_with_marker(position, axis);
+        let view = floor_with_aid(position, axis);
         marker(&view, &drawn_place::bearings().look(&view), junction)
     }
 
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn no_marker_is_seen_under_the_body_or_behind_a_wall() {
         assert_eq!(found([0.0, 0.0], 0.0, None), None);
-        let mut view = floor_with_marker([1.5, 0.0], 0.3);
+        let mut view = floor_with_aid([1.5, 0.0], 0.3);
         for index in 0..view.classes.len() {
             let x = GroundView::ground(index).x;
             if (1.0..1.05).contains(&x) {

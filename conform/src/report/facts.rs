@@ -282,7 +282,7 @@ impl CheckedLog {
             vertices: graph.vertex_count(),
             edges: graph.edge_count(),
             least: limit.is_none(),
-            world: NamedWorld { marker: Some(self.config.marker), ..world },
+            world: NamedWorld { marker: Some(self.config.marker.into()), ..world },
         })
     }
 

@@ -31,8 +31,8 @@ fn a_log_may_show_a_marker_unless_it_records_that_none_was_seen() {
     }
     // A directional marker lies along a door.
     let completed = |marker| lying.clone().complete_sightings(marker);
-    assert_eq!(completed(&Directional), Err(SightingError::NoDoor));
-    assert_eq!(completed(&NoMarker), Ok(()));
+    assert_eq!(completed(Directional), Err(SightingError::NoDoor));
+    assert_eq!(completed(NoMarker), Ok(()));
 }
 
 #[test]

@@ -78,7 +78,7 @@ fn with_driven(
     let events = timed(kinds);
     let states = |graph: &EmbeddedGraph| anywhere(graph, &NoMarker);
     let world = world.map(|graph| KnownWorld { graph: graph.clone(), states: states(graph) });
-    let config = ConformConfig { world, marker: &NoMarker, ..by_anyone() };
+    let config = ConformConfig { world, marker: NoMarker, ..by_anyone() };
     let possible = PossibleVisits::judge(&events, &junctions, driven.as_ref(), &config, &());
     judged(&events, &config).with_possible(possible)
 }
@@ -184,7 +184,7 @@ fn an_algorithm_takes_one_of_the_doors_of_an_open_visit() {
 fn a_divergence_of_a_robot_that_got_lost_leaves_the_verdict_open() {
     let fork = || bare_arrival(3, Sighting::Nothing);
     let events = bare_events([fork(), bare_door(5)]);
-    let config = ConformConfig { marker: &NoMarker, ..by_anyone() };
+    let config = ConformConfig { marker: NoMarker, ..by_anyone() };
     let found = judged(&events, &config);
     assert_eq!(found.verdict(), ConformVerdict::Diverged);
     let open = found.accusing_nobody(Unproved::Lost);
@@ -200,7 +200,7 @@ fn a_way_on_which_the_scanner_did_not_look_leaves_everything_open() {
     let kind = CheckedKind::Undecided(UndecidedCause::UnseenWay);
     events.events.push(CheckedEvent { kind, ..events.events[0].clone() });
     events.events.rotate_right(1);
-    let config = ConformConfig { marker: &NoMarker, ..by_anyone() };
+    let config = ConformConfig { marker: NoMarker, ..by_anyone() };
     let possible = PossibleVisits::judge(&events, &[], None, &config, &());
     assert_eq!((possible.fit, possible.certain), (VisitFit::UnseenWay, 0));
     found = judged(&events, &config).with_possible(possible);

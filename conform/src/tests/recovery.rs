@@ -4,7 +4,7 @@ use toposlam_logs::{messages, reader, recorder::Recorder, topic_map::TopicMap};
 use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::MappedWorld,
-    marker::{Marker, NoMarker, Undirected},
+    marker::{MarkerKind, NoMarker, Undirected},
     trace::{AllowedStep, Departure, MatchEnd, StepPurpose},
 };
 use toposlam_vision::laser::params::LaserParams;
@@ -186,11 +186,11 @@ fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
     let source = LogSource { log: &log, topics: &topics, head: Some(&head), sensor: None };
     let world = NamedWorld::numbered(name, "", plan.graph().clone(), Some(facing));
     let anyone = DoorChooser::Anyone;
-    let marked: [(_, Option<&'static dyn Marker>); 4] = [
+    let marked: [(_, Option<MarkerKind>); 4] = [
         (DoorChooser::Algorithm(None), None),
         (anyone, None),
-        (anyone, Some(&NoMarker)),
-        (anyone, Some(&Undirected)),
+        (anyone, Some(NoMarker)),
+        (anyone, Some(Undirected)),
     ];
     let check = |(doors, marker), world, start, steps| {
         let check = LogCheck {

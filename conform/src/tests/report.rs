@@ -6,8 +6,8 @@ use std::{
 };
 
 use toposlam_model::{
+    aid::State,
     trace::{Departure, Misfit, MisfitReason, TraceEvent, TraceEventKind, TraceOrderError},
-    world::State,
 };
 
 use super::*;
@@ -21,7 +21,7 @@ fn each_cause_has_a_name_and_a_class() {
     let [percept, door] = [(4, percept), (5, TraceEventKind::Door(Door(1)))]
         .map(|(id, kind)| TraceEvent { id, kind });
     let misfit = |event| {
-        let state = State { pose: Dart(0), placed: None };
+        let state = State { pose: Dart(0), placed: Dart(0) };
         let candidates = vec![(state, MisfitReason::NoSuchDoor { degree: 1 })];
         World(Misfit { event, moves: 2, candidates })
     };

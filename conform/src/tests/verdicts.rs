@@ -7,7 +7,7 @@ use toposlam_model::{
     folding::{SearchLimit, SmallestWorld},
     format::world_file,
     mapping::{MapWalk, MappingEvent},
-    marker::{Directional, Marker, NoMarker, Undirected},
+    marker::{Directional, MarkerKind, NoMarker, Undirected},
     trace::{Trace, TraceEventKind},
 };
 use toposlam_vision::visits::APPROACH_RANGE;
@@ -48,11 +48,11 @@ enum RunMarker {
 }
 
 impl RunMarker {
-    fn marker(self) -> &'static dyn Marker {
+    fn marker(self) -> MarkerKind {
         match self {
-            Self::Directional => &Directional,
-            Self::AlongDoor | Self::Undirected => &Undirected,
-            Self::NotRecorded => &NoMarker,
+            Self::Directional => Directional,
+            Self::AlongDoor | Self::Undirected => Undirected,
+            Self::NotRecorded => NoMarker,
         }
     }
 }
@@ -288,7 +288,7 @@ proptest! {
                         prop_assert_eq!(config.search.class, Class::Planar);
                     }
                     _ => {
-                        assert_impossible(trace, event, config.marker.name() != NoMarker.name());
+                        assert_impossible(trace, event, config.marker != NoMarker);
                     }
                 }
             }
@@ -360,7 +360,7 @@ proptest! {
         }
         let impossible = |kinds: &[TraceEventKind]| {
             let trace = Trace::new(kinds.to_vec()).unwrap();
-            let folded = FoldedTrace::new(&trace, &Directional, Class::Multigraph);
+            let folded = FoldedTrace::new(&trace, Directional, Class::Multigraph);
             (folded.impossible, trace)
         };
         prop_assert_eq!(impossible(&kinds).0, None);
@@ -429,7 +429,7 @@ fn a_loop_is_a_divergence_in_a_class_without_loops() {
         TraceEventKind::Percept(Percept { degree: 3, sighting: Sighting::Pointing(Door(door)) })
     };
     let trace = Trace::new([marked(0), TraceEventKind::Door(Door(1)), marked(1)]).unwrap();
-    let impossible = |class| FoldedTrace::new(&trace, &Directional, class).impossible;
+    let impossible = |class| FoldedTrace::new(&trace, Directional, class).impossible;
     assert_eq!(impossible(Class::Multigraph), None);
     for class in [Class::Simple, Class::Corridor, Class::Planar] {
         assert_eq!(impossible(class), Some((2, Impossibility::NotSimple { class })));
@@ -440,7 +440,7 @@ fn a_loop_is_a_divergence_in_a_class_without_loops() {
 fn the_marker_is_honoured_without_a_world() {
     let mut events = good_run();
     // A robot without a marker does not see one.
-    let unmarked = ConformConfig { marker: &NoMarker, ..by_anyone() };
+    let unmarked = ConformConfig { marker: NoMarker, ..by_anyone() };
     let found = divergence(&events, &unmarked);
     assert_eq!((found.event, found.fault), (0, FaultClass::Perception));
     let why = Impossibility::Marker;
@@ -528,17 +528,17 @@ fn the_door_after_turning_back_is_counted_from_the_first_entry() {
 #[test]
 fn a_marker_that_is_not_seen_lies_behind_some_door() {
     let nothing = |degree| bare_arrival(degree, Sighting::Nothing);
-    let at = |last: u32, marker: &'static dyn Marker| {
+    let at = |last: u32, marker: MarkerKind| {
         let walk = [nothing(1), bare_door(0), nothing(last)];
         let judged = judged(&bare_events(walk), &ConformConfig { marker, ..by_anyone() });
         judged.divergence.as_ref().map(place_of)
     };
-    for marker in [&Directional as &'static dyn Marker, &Undirected] {
+    for marker in [Directional, Undirected] {
         // Two dead ends, and nothing else.
         assert_eq!(at(1, marker), Some((2, "no-world")), "{}", marker.name());
         assert_eq!(at(2, marker), None, "{}", marker.name());
     }
-    assert_eq!(at(1, &NoMarker), None);
+    assert_eq!(at(1, NoMarker), None);
 }
 
 #[test]

@@ -177,7 +177,7 @@ fn picture<'a>(
         vertex_names,
         edge_names: None,
         start: marker,
-        marker: &Directional,
+        marker: Directional.into(),
         placement: Placement::Free,
         title: "",
         caption: "",

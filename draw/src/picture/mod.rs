@@ -45,9 +45,10 @@ mod gallery;
 mod reading;
 
 use toposlam_model::{
+    aid::{Aid, AidKind},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     format::named_world::NamedWorld,
-    marker::{Directional, Marker, MarkerLook, MarkerPart},
+    marker::{Directional, MarkerLook, MarkerPart},
 };
 
 pub(crate) use geometry::Point;
@@ -75,7 +76,7 @@ pub struct WorldPicture<'a> {
     pub edge_names: Option<&'a [String]>,
     /// The facing dart, by which the marker is placed; without one, no marker is drawn.
     pub start: Option<Dart>,
-    pub marker: &'a dyn Marker,
+    pub marker: AidKind,
     pub placement: Placement<'a>,
     /// The text above the picture; may be empty.
     pub title: &'a str,
@@ -110,10 +111,17 @@ impl WorldPicture<'_> {
             [MarkerPart::OnEdge(dart)] => format!("{} is marked", edge(*dart)),
             [MarkerPart::OnEdgeAlong(dart)] => format!("{} is marked with an arrow", edge(*dart)),
             [MarkerPart::At { vertex, .. }] => format!("the marker lies at {}", name(*vertex)),
-            [MarkerPart::At { vertex: one, .. }, MarkerPart::At { vertex: other, .. }]
-                if one == other =>
+            [MarkerPart::StringEnd(vertex)] => format!("the string is fixed at {}", name(*vertex)),
+            [MarkerPart::Robot { pose, .. }] => {
+                format!("the whole team stands at {}", name(graph.vertex(*pose)))
+            }
+            [MarkerPart::At { vertex: one, .. }, others @ ..]
+                if others.iter().all(
+                    |other| matches!(other, MarkerPart::At { vertex, .. } if vertex == one),
+                ) =>
             {
-                format!("both markers lie at {}", name(*one))
+                let all = if others.len() == 1 { "both" } else { "all" };
+                format!("{all} markers lie at {}", name(*one))
             }
             parts => {
                 let at = |part: &MarkerPart| match part {
@@ -121,9 +129,11 @@ impl WorldPicture<'_> {
                     MarkerPart::At { vertex, look: MarkerLook::Other } => {
                         format!("{} (dashed)", name(*vertex))
                     }
+                    MarkerPart::At { vertex, .. } | MarkerPart::StringEnd(vertex) => name(*vertex),
                     MarkerPart::Pointing(dart)
                     | MarkerPart::OnEdge(dart)
-                    | MarkerPart::OnEdgeAlong(dart) => name(graph.vertex(*dart)),
+                    | MarkerPart::OnEdgeAlong(dart)
+                    | MarkerPart::Robot { pose: dart, .. } => name(graph.vertex(*dart)),
                 };
                 let places: Vec<_> = parts.iter().map(at).collect();
                 format!("markers lie at {}", places.join(" and "))
@@ -190,7 +200,7 @@ impl<'a> From<&'a NamedWorld> for WorldPicture<'a> {
             vertex_names: &world.vertex_names,
             edge_names: world.edge_names.as_deref(),
             start: world.start,
-            marker: world.marker.unwrap_or(&Directional),
+            marker: world.marker.unwrap_or(Directional.into()),
             placement: Placement::from(world),
             title: &world.name,
             caption: &world.about,

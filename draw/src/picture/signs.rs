@@ -1,7 +1,7 @@
 //! The signs of a marker, drawn in red.
 
 use toposlam_model::{
-    embedded_graph::Dart,
+    embedded_graph::{Dart, Vertex},
     marker::{MarkerLook, MarkerPart},
 };
 
@@ -29,17 +29,21 @@ pub(super) fn signs(picture: &WorldPicture, drawing: &Drawing) -> Vec<Sign> {
     let mut signs: Vec<Sign> = Vec::new();
     let scale = if drawing.size.knob > 0.0 { 1.35 } else { 0.9 };
     for part in picture.parts() {
+        let ring = |vertex: Vertex, look| {
+            let centre = drawing.centres[vertex.at()];
+            let radius = drawing.size.discs[vertex.at()] + drawing.size.knob + 3.5;
+            // A second marker at the same vertex is drawn around the first.
+            let there = |sign: &&Sign| matches!(sign, Sign::Ring { centre: c, .. } if *c == centre);
+            let around = signs.iter().filter(there).count() as f64;
+            Sign::Ring { centre, radius: radius + 4.5 * around, look }
+        };
         let sign = match part {
-            MarkerPart::At { vertex, look } => {
-                let centre = drawing.centres[vertex.at()];
-                let radius = drawing.size.discs[vertex.at()] + drawing.size.knob + 3.5;
-                // A second marker at the same vertex is drawn around the first.
-                let there =
-                    |sign: &&Sign| matches!(sign, Sign::Ring { centre: c, .. } if *c == centre);
-                let around = signs.iter().filter(there).count() as f64;
-                Sign::Ring { centre, radius: radius + 4.5 * around, look }
+            MarkerPart::At { vertex, look } => ring(vertex, look),
+            MarkerPart::StringEnd(vertex) => ring(vertex, MarkerLook::Third),
+            MarkerPart::Robot { pose, shows_heading: false } => {
+                ring(picture.graph.vertex(pose), MarkerLook::One)
             }
-            MarkerPart::Pointing(dart) => {
+            MarkerPart::Pointing(dart) | MarkerPart::Robot { pose: dart, .. } => {
                 let vertex = picture.graph.vertex(dart).at();
                 let direction = drawing.doors[dart.at()];
                 let away = drawing.size.discs[vertex] + drawing.size.knob + 1.5;
@@ -121,7 +125,7 @@ impl Sign {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::{format::named_world::NamedWorld, marker::named};
+    use toposlam_model::{aid::named, format::named_world::NamedWorld};
 
     use super::{
         super::gallery::worlds::{multigraph, simple},
@@ -133,7 +137,7 @@ mod tests {
         let picture = WorldPicture { marker: named(marker).unwrap(), ..WorldPicture::from(world) };
         let letter = |sign: &Sign| match sign {
             Sign::Ring { look: MarkerLook::One, .. } => 'o',
-            Sign::Ring { look: MarkerLook::Other, .. } => 'x',
+            Sign::Ring { .. } => 'x',
             Sign::Arrow { .. } => '>',
             Sign::Bar { .. } => '|',
         };

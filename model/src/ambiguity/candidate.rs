@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PlacedWorld, quotient::QuotientCode};
+use super::{PlacedWorld, quotient::QuotientCode, space::StateLabel};
 use crate::{
     isomorphism::StartCode,
-    percept::{Percept, Sighting},
+    percept::{Door, OtherRobot, Sighting, StringView, TeamView},
 };
 
 /// A placed world that may be ambiguous, with the code of its quotient, as bytes.
@@ -29,23 +29,8 @@ fn to_word(byte: u8) -> u32 {
     if byte < 128 { byte.into() } else { u32::MAX - u32::from(u8::MAX - byte) }
 }
 
-fn push_label(bytes: &mut Vec<u8>, percept: Percept, carries: bool) {
-    use Sighting::{
-        Both, First, Lying, Nothing, Passed, PassedAgainst, PassedAlong, Pointing, Second,
-    };
-    let (kind, number) = match percept.sighting {
-        Nothing => (0, 0),
-        Pointing(door) => (1, door.0),
-        Lying(count) => (2, count),
-        First => (3, 0),
-        Second => (4, 0),
-        Both => (5, 0),
-        Passed => (6, 0),
-        PassedAlong => (7, 0),
-        PassedAgainst => (8, 0),
-    };
-    bytes.extend([percept.degree as u8, kind << 1 | u8::from(carries)]);
-    // A marker of your own may show any number.
+/// Adds a number: most take one byte.
+fn push_number(bytes: &mut Vec<u8>, number: u32) {
     match u8::try_from(number) {
         Ok(number) if number < u8::MAX => bytes.push(number),
         _ => {
@@ -55,16 +40,43 @@ fn push_label(bytes: &mut Vec<u8>, percept: Percept, carries: bool) {
     }
 }
 
+fn push_label(bytes: &mut Vec<u8>, (percept, held): StateLabel) {
+    let mut push = |numbers: &[u32]| {
+        numbers.iter().for_each(|&number| push_number(bytes, number));
+    };
+    let door = |door: Option<Door>| door.map_or(0, |Door(door)| door + 1);
+    push(&[percept.degree, held]);
+    match percept.sighting {
+        Sighting::Nothing => push(&[0]),
+        Sighting::Pointing(Door(door)) => push(&[1, door]),
+        Sighting::Lying(count) => push(&[2, count]),
+        Sighting::These(markers) => push(&[3, markers.bits()]),
+        Sighting::Passed => push(&[4]),
+        Sighting::PassedAlong => push(&[5]),
+        Sighting::PassedAgainst => push(&[6]),
+        Sighting::String(StringView { doors, fixed_end, free_end, hand }) => {
+            push(&[7, doors.bits(), fixed_end.into(), free_end.into(), door(hand)]);
+        }
+        Sighting::Team(TeamView(others)) => {
+            push(&[8]);
+            others.into_iter().for_each(|other| match other {
+                OtherRobot::Absent => push(&[0]),
+                OtherRobot::Elsewhere { degree } => push(&[1, degree]),
+                OtherRobot::Here { along } => push(&[2, door(along)]),
+                OtherRobot::WithSecond { along } => push(&[3, door(along)]),
+            });
+        }
+    }
+}
+
 impl AmbiguityCandidate {
     pub(super) fn new(quotient: &QuotientCode, code: &StartCode) -> Self {
-        // A movable marker makes more classes than a byte can number.
-        let is_wide = quotient.len() > 1 << u8::BITS;
         let mut bytes = vec![0; LENGTH];
-        for &((percept, carries), leads_to) in quotient {
-            push_label(&mut bytes, percept, carries);
-            for class in leads_to {
-                let class = (class as u16).to_be_bytes();
-                bytes.extend(&class[usize::from(!is_wide)..]);
+        for (label, leads_to) in quotient {
+            push_label(&mut bytes, *label);
+            push_number(&mut bytes, leads_to.len() as u32);
+            for &class in leads_to {
+                push_number(&mut bytes, class);
             }
         }
         let length = (bytes.len() - LENGTH) as u32;
@@ -73,13 +85,6 @@ impl AmbiguityCandidate {
         bytes.push(code.words().len() as u8);
         bytes.extend(code.words().iter().copied().map(to_byte));
         Self(bytes.into_boxed_slice())
-    }
-
-    /// The most bytes of a candidate with these numbers of states and edges.
-    pub(super) fn most_bytes(states: usize, edges: usize) -> usize {
-        // The degree, the kind of sighting and its number; and three classes.
-        let class = if states > 1 << u8::BITS { 2 } else { 1 };
-        LENGTH + states * (2 + 5 + 3 * class) + 1 + 1 + edges
     }
 
     /// The candidate of these bytes; `None` if they are not those of one.
@@ -121,7 +126,7 @@ mod tests {
         any_graph::{Class, any_graph},
         embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::{as_discovered, code},
-        percept::Door,
+        percept::{Door, Percept},
     };
 
     fn placed(graph: &EmbeddedGraph, facing: Dart) -> PlacedWorld {
@@ -157,17 +162,21 @@ mod tests {
 
     #[test]
     fn different_quotients_have_different_bytes() {
-        let label = |degree, sighting, carries| (Percept { degree, sighting }, carries);
-        let quotients: [QuotientCode; 9] = [
+        let class = |degree, sighting, held, leads_to: &[u32]| {
+            ((Percept { degree, sighting }, held), leads_to.into())
+        };
+        let quotients: [QuotientCode; 11] = [
             vec![],
-            vec![(label(1, Sighting::Nothing, false), [0; 3])],
-            vec![(label(2, Sighting::Nothing, false), [0; 3])],
-            vec![(label(1, Sighting::Nothing, true), [0; 3])],
-            vec![(label(1, Sighting::Pointing(Door(0)), false), [0; 3])],
-            vec![(label(1, Sighting::Nothing, false), [0, 0, 1])],
-            vec![(label(1, Sighting::Lying(1), false), [0; 3])],
-            vec![(label(1, Sighting::Lying(257), false), [0; 3])],
-            vec![(label(1, Sighting::Nothing, false), [0; 3]); 300],
+            vec![class(1, Sighting::Nothing, 0, &[0; 2])],
+            vec![class(1, Sighting::Nothing, 0, &[0; 3])],
+            vec![class(2, Sighting::Nothing, 0, &[0; 3])],
+            vec![class(1, Sighting::Nothing, 1, &[0; 3])],
+            vec![class(1, Sighting::Pointing(Door(0)), 0, &[0; 3])],
+            vec![class(1, Sighting::Nothing, 0, &[0, 0, 1])],
+            vec![class(1, Sighting::Nothing, 0, &[0, 0, 256])],
+            vec![class(1, Sighting::Lying(1), 0, &[0; 3])],
+            vec![class(1, Sighting::Lying(257), 0, &[0; 3])],
+            vec![class(1, Sighting::Nothing, 0, &[0; 3]); 300],
         ];
         let start = StartCode::of_words(vec![u32::MAX - 1, u32::MAX - 1]);
         let candidates = quotients.map(|quotient| AmbiguityCandidate::new(&quotient, &start));

@@ -1,6 +1,8 @@
 //! Are two placed worlds distinguishable?
 
-use std::{cell::OnceCell, collections::HashSet};
+use std::cell::OnceCell;
+
+use hashbrown::{HashMap, HashSet};
 
 use super::{
     partition::coarsest,
@@ -9,38 +11,33 @@ use super::{
     witness::{Relation, Walk},
 };
 use crate::{
+    aid::{Action, Aid, AnyAid, Places, State},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Interrupted, Watch},
-    marker::Marker,
-    world::{Action, GraphWorld, State},
+    world::GraphWorld,
 };
 
-/// Two placed worlds, held against each other. Their states, as [`state_count`](super::state_count)
-/// counts them, are numbered together in a `u32`, and take memory accordingly.
+/// Two placed worlds, held against each other. Their states are numbered together in a `u32`, and take memory
+/// accordingly.
 pub struct Comparison<'a> {
-    marker: &'a dyn Marker,
     worlds: [PlacedRobot<'a>; 2],
-    states: [States; 2],
-    /// The class of each state of the first and then of the second world, computed when needed.
-    class: OnceCell<Vec<u32>>,
+    /// The states of both, and the class of each state of the first and then of the second world; computed when needed.
+    partition: OnceCell<([States; 2], Vec<u32>)>,
 }
 
 impl<'a> Comparison<'a> {
-    /// Compares two graphs. The facing darts place the marker in each.
+    /// Compares two graphs. The facing darts place the aid in each.
     pub fn new(
-        marker: &'a dyn Marker,
+        aid: impl Into<AnyAid<'a>>,
         (one, facing): (&'a EmbeddedGraph, Dart),
         (other, other_facing): (&'a EmbeddedGraph, Dart),
     ) -> Self {
-        let states = [
-            States::from_start(one, marker, facing),
-            States::from_start(other, marker, other_facing),
-        ];
+        let aid = aid.into();
         let worlds = [
-            GraphWorld::with_marker(one, marker, facing),
-            GraphWorld::with_marker(other, marker, other_facing),
+            GraphWorld::with_aid(one, aid, facing),
+            GraphWorld::with_aid(other, aid, other_facing),
         ];
-        Self { marker, worlds, states, class: OnceCell::new() }
+        Self { worlds, partition: OnceCell::new() }
     }
 
     /// Computes the coarsest partition of the states of both worlds, once. Then each question about
@@ -49,40 +46,46 @@ impl<'a> Comparison<'a> {
     /// # Errors
     /// Returns an error if the watch stops.
     pub fn partition(&self, watch: &dyn Watch) -> Result<(), Interrupted> {
-        self.class(watch).map(|_| ())
+        self.classes(watch).map(|_| ())
     }
 
-    fn class(&self, watch: &dyn Watch) -> Result<&[u32], Interrupted> {
-        if let Some(class) = self.class.get() {
-            return Ok(class);
+    fn classes(&self, watch: &dyn Watch) -> Result<&([States; 2], Vec<u32>), Interrupted> {
+        if let Some(classes) = self.partition.get() {
+            return Ok(classes);
         }
-        let space =
-            |at: usize| Space::from_states(self.worlds[at].graph(), self.marker, &self.states[at]);
-        let [one, other] = [space(0), space(1)];
+        let [mut one, other] = self.worlds.each_ref().map(Space::new);
         let beyond = one.labels.len() as u32;
-        let both = |(one, other): (Vec<u32>, Vec<u32>)| -> Vec<u32> {
-            one.into_iter().chain(other.into_iter().map(|to| to + beyond)).collect()
-        };
+        let all = beyond + other.labels.len() as u32;
+        let count = one.maps.len().max(other.maps.len());
+        one.maps.resize_with(count, || (0..beyond).collect());
+        for (map, of_other) in one.maps.iter_mut().zip(&other.maps) {
+            map.extend(of_other.iter().map(|to| to + beyond));
+        }
+        for map in &mut one.maps {
+            map.extend(map.len() as u32..all);
+        }
         let labels = [one.labels, other.labels].concat();
-        let maps: Vec<_> = one.maps.into_iter().zip(other.maps).map(both).collect();
-        let class = coarsest(&labels, &maps, watch)?;
-        Ok(self.class.get_or_init(|| class))
+        let class = coarsest(&labels, &one.maps, watch)?;
+        Ok(self.partition.get_or_init(|| ([one.states, other.states], class)))
     }
 
     fn in_one_class(&self, poses: [Dart; 2], watch: &dyn Watch) -> Result<bool, Interrupted> {
         let [one, other] = self.starts(poses);
-        let here = self.states[0].number(one.state()) as usize;
-        let there = self.states[0].len() + self.states[1].number(other.state()) as usize;
-        let class = self.class(watch)?;
-        Ok(class[here] == class[there])
+        let (states, class) = self.classes(watch)?;
+        let here = states[0].number(&one.state()).map(|here| here as usize);
+        let there = states[1].number(&other.state()).map(|there| states[0].len() + there as usize);
+        let class = |state: Option<usize>| state.and_then(|state| class.get(state));
+        Ok(class(here).is_some() && class(here) == class(there))
     }
 
     /// The two worlds with their markers where they were placed, and in each a robot that has come in
     /// by such a dart, which is one of the graph's.
     pub fn starts(&self, poses: [Dart; 2]) -> [PlacedRobot<'a>; 2] {
         let [one, other] = &self.worlds;
-        let begun =
-            |world: &PlacedRobot<'a>, pose| world.clone().at(State { pose, ..world.state() });
+        let begun = |world: &PlacedRobot<'a>, pose| {
+            let start = State { pose, ..world.state() };
+            world.clone().at(start)
+        };
         [begun(one, poses[0]), begun(other, poses[1])]
     }
 
@@ -98,7 +101,7 @@ impl<'a> Comparison<'a> {
     /// each of these starts has a walk that distinguishes it.
     pub fn start_like(&self, pose: Dart) -> Option<Dart> {
         let world = &self.worlds[1];
-        let starts = self.marker.starts(world.graph(), world.pose());
+        let starts = world.aid().starts(world.graph(), world.pose());
         starts.into_iter().find(|&other| self.indistinguishable([pose, other]))
     }
 
@@ -122,16 +125,16 @@ impl<'a> Comparison<'a> {
         most_pairs: usize,
         watch: &dyn Watch,
     ) -> Result<Option<Bisimulation>, Interrupted> {
-        if self.class.get().is_some() && !self.in_one_class(poses, watch)? {
+        if self.partition.get().is_some() && !self.in_one_class(poses, watch)? {
             return Ok(None);
         }
-        let mut pairs = Pairs::new(self, poses);
+        let mut pairs = Pairs::new(self.starts(poses));
         let mut look = pairs.reach(self.few_pairs().min(most_pairs), watch)?;
         if matches!(look, Look::Enough) && self.in_one_class(poses, watch)? {
             look = pairs.reach(most_pairs, watch)?;
             if matches!(look, Look::Enough) {
-                let class = self.class(watch)?.to_vec();
-                let classes = StateClasses::new(self.states.clone(), class);
+                let (states, class) = self.classes(watch)?.clone();
+                let classes = StateClasses::new(states, class);
                 return Ok(Some(Bisimulation::Classes(classes)));
             }
         }
@@ -155,10 +158,10 @@ impl<'a> Comparison<'a> {
         poses: [Dart; 2],
         watch: &dyn Watch,
     ) -> Result<Option<Walk>, Interrupted> {
-        if self.class.get().is_some() && self.in_one_class(poses, watch)? {
+        if self.partition.get().is_some() && self.in_one_class(poses, watch)? {
             return Ok(None);
         }
-        let mut pairs = Pairs::new(self, poses);
+        let mut pairs = Pairs::new(self.starts(poses));
         let mut look = pairs.reach(self.few_pairs(), watch)?;
         if matches!(look, Look::Enough) && !self.in_one_class(poses, watch)? {
             look = pairs.reach(usize::MAX, watch)?;
@@ -171,7 +174,12 @@ impl<'a> Comparison<'a> {
 
     /// So many pairs are looked at before the partition is made, which costs no less.
     fn few_pairs(&self) -> usize {
-        4 * (self.states[0].len() + self.states[1].len())
+        let states = |world: &PlacedRobot<'_>| {
+            let graph = world.graph();
+            let places = if world.aid().moves() { graph.vertex_count() + 1 } else { 1 };
+            graph.dart_count().saturating_mul(places)
+        };
+        self.worlds.iter().map(states).sum::<usize>().saturating_mul(4)
     }
 }
 
@@ -186,7 +194,7 @@ pub enum Bisimulation {
 
 impl Bisimulation {
     /// Whether this proves that the robots in the two worlds never perceive a difference.
-    pub fn verify(&self, one: &PlacedRobot<'_>, other: &PlacedRobot<'_>) -> bool {
+    pub fn verify<'a>(&self, one: &PlacedRobot<'a>, other: &PlacedRobot<'a>) -> bool {
         match self {
             Self::Relation(relation) => relation.verify(one, other),
             Self::Classes(classes) => classes.verify(one, other),
@@ -207,9 +215,10 @@ const BETWEEN_QUESTIONS: usize = 256;
 
 /// Pairs of states that robots that do the same can reach, breadth-first; those of a length in the
 /// order of the least walks that lead to them.
-struct Pairs<'c, 'a> {
+struct Pairs<'a> {
     worlds: [PlacedRobot<'a>; 2],
-    states: &'c [States; 2],
+    /// The numbers of the states of each world that were met.
+    numbers: [HashMap<State<Places>, u32>; 2],
     found: Vec<ReachedPair>,
     /// The place of the pair to look further from.
     next: usize,
@@ -218,23 +227,34 @@ struct Pairs<'c, 'a> {
 
 /// A pair of states, with the earlier pair and the action by which it was reached.
 struct ReachedPair {
-    pair: (State, State),
+    pair: (State<Places>, State<Places>),
     from: Option<(usize, Action)>,
 }
 
-impl<'c, 'a> Pairs<'c, 'a> {
-    fn new(comparison: &'c Comparison<'a>, poses: [Dart; 2]) -> Self {
-        let worlds = comparison.starts(poses);
+impl<'a> Pairs<'a> {
+    fn new(worlds: [PlacedRobot<'a>; 2]) -> Self {
         let pair = (worlds[0].state(), worlds[1].state());
-        let states = &comparison.states;
-        let mut pairs = Self { worlds, states, found: Vec::new(), next: 0, known: HashSet::new() };
+        let numbers = [HashMap::new(), HashMap::new()];
+        let mut pairs = Self { worlds, numbers, found: Vec::new(), next: 0, known: HashSet::new() };
         pairs.find(pair, None);
         pairs
     }
 
-    fn find(&mut self, pair: (State, State), from: Option<(usize, Action)>) -> bool {
-        let [one, other] = self.states;
-        let new = self.known.insert([one.number(pair.0), other.number(pair.1)]);
+    fn find(
+        &mut self,
+        pair: (State<Places>, State<Places>),
+        from: Option<(usize, Action)>,
+    ) -> bool {
+        let [one, other] = &mut self.numbers;
+        let number = |known: &mut HashMap<State<Places>, u32>, state: &State<Places>| {
+            if let Some(&number) = known.get(state) {
+                return number;
+            }
+            let number = known.len() as u32;
+            known.insert(state.clone(), number);
+            number
+        };
+        let new = self.known.insert([number(one, &pair.0), number(other, &pair.1)]);
         if new {
             self.found.push(ReachedPair { pair, from });
         }
@@ -247,11 +267,11 @@ impl<'c, 'a> Pairs<'c, 'a> {
 
     /// Finds pairs until one of them shows a difference, or there are no more, or as many as these.
     fn reach(&mut self, most: usize, watch: &dyn Watch) -> Result<Look, Interrupted> {
-        while let Some(&ReachedPair { pair, .. }) = self.found.get(self.next) {
+        while let Some(pair) = self.found.get(self.next).map(|found| found.pair.clone()) {
             if self.next.is_multiple_of(BETWEEN_QUESTIONS) {
                 watch.check_stop()?;
             }
-            let [one, other] = self.at(pair);
+            let [one, other] = self.at(&pair);
             if self.next == 0 && one.sensed() != other.sensed() {
                 return Ok(self.difference_at(0));
             }
@@ -263,7 +283,8 @@ impl<'c, 'a> Pairs<'c, 'a> {
                 // Robots that perceive the same can do the same.
                 let acted = one.act(action).and_then(|()| other.act(action));
                 let from = Some((self.next, action));
-                let is_new = acted.is_ok() && self.find((one.state(), other.state()), from);
+                let states = (one.state(), other.state());
+                let is_new = acted.is_ok() && self.find(states, from);
                 if is_new && one.sensed() != other.sensed() {
                     return Ok(self.difference_at(self.found.len() - 1));
                 }
@@ -273,9 +294,9 @@ impl<'c, 'a> Pairs<'c, 'a> {
         Ok(Look::NoMore)
     }
 
-    fn at(&self, (here, there): (State, State)) -> [PlacedRobot<'a>; 2] {
+    fn at(&self, (here, there): &(State<Places>, State<Places>)) -> [PlacedRobot<'a>; 2] {
         let [one, other] = &self.worlds;
-        [one.clone().at(here), other.clone().at(there)]
+        [one.clone().at(here.clone()), other.clone().at(there.clone())]
     }
 
     /// How the pair at a place was reached, and what is perceived there.
@@ -287,7 +308,7 @@ impl<'c, 'a> Pairs<'c, 'a> {
             at = from;
         }
         actions.reverse();
-        let percepts = self.at(self.found[place].pair).map(|robot| robot.sensed());
+        let percepts = self.at(&self.found[place].pair).map(|robot| robot.sensed());
         Look::Difference(Walk { actions, percepts })
     }
 }
@@ -295,7 +316,7 @@ impl<'c, 'a> Pairs<'c, 'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{any_graph::StopAt, marker::named};
+    use crate::{aid::named, any_graph::StopAt};
 
     /// A cycle of junctions, to each of which both ends of a long way are joined; these are of one
     /// length, but for that at the last junction.
@@ -336,10 +357,10 @@ mod tests {
             assert_eq!(pairs > 4 * states, is_made);
             let asked = comparison(&graphs);
             assert_eq!(asked.relation([Dart(0); 2]).unwrap().0.len(), pairs);
-            assert_eq!(asked.class.get().is_some(), is_made);
+            assert_eq!(asked.partition.get().is_some(), is_made);
             let asked = comparison(&graphs);
             assert_eq!(asked.walk([Dart(0); 2]), None);
-            assert_eq!(asked.class.get().is_some(), is_made);
+            assert_eq!(asked.partition.get().is_some(), is_made);
         }
     }
 
@@ -397,7 +418,7 @@ mod tests {
         let poses = [Dart(0); 2];
         let asked = comparison(&graphs);
         let walk = asked.walk(poses).unwrap();
-        assert!(asked.class.get().is_some());
+        assert!(asked.partition.get().is_some());
         let [here, there] = asked.starts(poses);
         assert!(walk.verify(&here, &there));
         // Also once the partition is made, and for the relation.

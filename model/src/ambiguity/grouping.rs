@@ -7,16 +7,18 @@ use super::{
     Unfinished, findings::rank,
 };
 use crate::{
+    aid::AnyAid,
     enumerate::{Watch, in_parts},
-    marker::Marker,
 };
 
 /// The number of pairs that are confirmed at once, by several threads.
-const PAIRS: usize = 1024;
+const AT_ONCE: usize = 1024;
+/// The most pairs of states of a relation; beyond, the classes of states confirm a pair.
+const PAIRS: usize = 4096;
 
-/// The groups of candidates with the same quotient. A relation confirms each world with the first of its group.
+/// The groups of candidates with the same quotient. A bisimulation confirms each world with the first of its group.
 pub(super) struct Grouping<'a> {
-    marker: &'a dyn Marker,
+    aid: AnyAid<'a>,
     watch: &'a dyn Watch,
     kept: KeptPairs,
     sizes: Vec<SizeFindings>,
@@ -29,12 +31,12 @@ pub(super) struct Grouping<'a> {
 impl<'a> Grouping<'a> {
     /// No groups yet. The ambiguous worlds of these sizes are counted.
     pub(super) fn new(
-        marker: &'a dyn Marker,
+        aid: AnyAid<'a>,
         sizes: Vec<SizeFindings>,
         kept: KeptPairs,
         watch: &'a dyn Watch,
     ) -> Self {
-        Self { marker, watch, kept, sizes, groups: Vec::new(), first: None, pairs: Vec::new() }
+        Self { aid, watch, kept, sizes, groups: Vec::new(), first: None, pairs: Vec::new() }
     }
 
     pub(super) fn add(&mut self, candidate: AmbiguityCandidate) -> Result<(), Unfinished> {
@@ -55,7 +57,7 @@ impl<'a> Grouping<'a> {
             self.put_two([&one, &other]);
             self.pairs.extend([[one.clone(), one.clone()], [one, other]]);
         }
-        if self.pairs.len() >= PAIRS { self.confirm() } else { Ok(()) }
+        if self.pairs.len() >= AT_ONCE { self.confirm() } else { Ok(()) }
     }
 
     /// The first two worlds of a group are its smallest pair.
@@ -90,11 +92,11 @@ impl<'a> Grouping<'a> {
     }
 
     fn confirm(&mut self) -> Result<(), Unfinished> {
-        let (marker, watch) = (self.marker, self.watch);
+        let (aid, watch) = (self.aid, self.watch);
         let confirm = |pair: &[PlacedWorld; 2]| {
             if watch.stop() {
                 Err(Unfinished::Interrupted)
-            } else if is_confirmed(marker, pair.each_ref()) {
+            } else if is_confirmed(aid, pair.each_ref()) {
                 Ok(())
             } else {
                 Err(Unfinished::Unconfirmed(Box::new(pair.clone())))
@@ -112,14 +114,14 @@ impl<'a> Grouping<'a> {
     }
 }
 
-/// Whether a verified relation shows that two placed worlds are indistinguishable.
-fn is_confirmed(marker: &dyn Marker, [one, other]: [&PlacedWorld; 2]) -> bool {
+/// Whether a verified bisimulation shows that two placed worlds are indistinguishable.
+fn is_confirmed(aid: AnyAid<'_>, [one, other]: [&PlacedWorld; 2]) -> bool {
     let start = PlacedWorld::FACING;
-    let comparison = Comparison::new(marker, (&one.graph, start), (&other.graph, start));
+    let comparison = Comparison::new(aid, (&one.graph, start), (&other.graph, start));
     comparison.start_like(start).is_some_and(|pose| {
         let [here, there] = comparison.starts([start, pose]);
-        let relation = comparison.relation([start, pose]);
-        relation.is_some_and(|relation| relation.verify(&here, &there))
+        let found = comparison.bisimulation([start, pose], PAIRS, &()).ok().flatten();
+        found.is_some_and(|found| found.verify(&here, &there))
     })
 }
 
@@ -138,7 +140,7 @@ mod tests {
         let findings =
             AmbiguitySearch::new(Class::Multigraph, 4, marker).unwrap().run(&()).unwrap();
         assert!(findings.groups.len() > 1);
-        let mut grouping = Grouping::new(marker, Vec::new(), KeptPairs::All, &());
+        let mut grouping = Grouping::new(marker.into(), Vec::new(), KeptPairs::All, &());
         // As if all of these had the same quotient.
         for world in findings.groups.iter().flat_map(|group| &group.worlds) {
             grouping.add(AmbiguityCandidate::new(&QuotientCode::new(), &world.code)).unwrap();

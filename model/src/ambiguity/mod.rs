@@ -23,7 +23,7 @@ pub use comparison::{Bisimulation, Comparison};
 pub use findings::{AmbiguousGroup, Findings, KeptPairs, PlacedWorld, SizeFindings, Unfinished};
 pub use search::{AmbiguitySearch, SearchPart};
 pub use sorter::{CandidateSorter, CandidatesInMemory, SearchError, SortedCandidates, SorterError};
-pub use space::{PlacedRobot, state_count};
+pub use space::{PlacedRobot, has_more_states};
 pub use state_classes::StateClasses;
 pub use twins::{Twin, Twins, twins};
 pub use witness::{Relation, Walk, replay};

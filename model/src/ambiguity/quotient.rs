@@ -1,13 +1,14 @@
 //! The quotient of a placed world: its states up to indistinguishability.
 
+use smallvec::SmallVec;
+
 use super::{
     partition::coarsest,
-    space::{Space, StateLabel, States},
+    space::{PlacedRobot, Space, StateLabel, States},
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{StartCode, code},
-    marker::Marker,
 };
 
 /// A placed world with indistinguishable states identified.
@@ -17,6 +18,8 @@ use crate::{
 pub(super) struct Quotient {
     labels: Vec<StateLabel>,
     maps: Vec<Vec<u32>>,
+    /// The number of maps of each class.
+    arities: Vec<usize>,
     /// The class of each state of the placed world.
     class: Vec<u32>,
 }
@@ -24,13 +27,12 @@ pub(super) struct Quotient {
 /// The code of a class of a quotient. A search from that class numbers the classes. The code lists the label of
 /// each class, and the numbers of the classes to which the maps lead. Two states, of any worlds, have the same code
 /// exactly when they are indistinguishable.
-pub(super) type QuotientCode = Vec<(StateLabel, [u32; 3])>;
+pub(super) type QuotientCode = Vec<(StateLabel, SmallVec<[u32; 4]>)>;
 
 impl Quotient {
-    /// The quotient of a world whose marker was placed by the facing dart, and its states.
-    pub(super) fn new(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> (Self, States) {
-        let states = States::from_start(graph, marker, facing);
-        let space = Space::from_states(graph, marker, &states);
+    /// The quotient of the world of a start, and its states.
+    pub(super) fn new(start: &PlacedRobot<'_>) -> (Self, States) {
+        let space = Space::new(start);
         // Nothing stops it.
         let class = coarsest(&space.labels, &space.maps, &()).unwrap_or_default();
         let count = class.iter().max().map_or(0, |&last| last as usize + 1);
@@ -39,11 +41,12 @@ impl Quotient {
             representative[class as usize] = state;
         }
         let labels = representative.iter().map(|&state| space.labels[state]).collect();
+        let arities = representative.iter().map(|&state| space.arities[state]).collect();
         let classes_after = |map: &Vec<u32>| {
             representative.iter().map(|&state| class[map[state] as usize]).collect()
         };
         let maps = space.maps.iter().map(classes_after).collect();
-        (Self { labels, maps, class }, states)
+        (Self { labels, maps, arities, class }, space.states)
     }
 
     pub(super) fn classes(&self) -> &[u32] {
@@ -66,14 +69,14 @@ impl Quotient {
         let mut next = 0;
         while let Some(&class) = met.get(next) {
             next += 1;
-            let mut leads_to = [0; 3];
-            for (map, to) in self.maps.iter().zip(&mut leads_to) {
+            let mut leads_to = SmallVec::new();
+            for map in &self.maps[..self.arities[class as usize]] {
                 let after = map[class as usize];
                 if number[after as usize] == UNMET {
                     number[after as usize] = met.len() as u32;
                     met.push(after);
                 }
-                *to = number[after as usize];
+                leads_to.push(number[after as usize]);
             }
             code.push((self.labels[class as usize], leads_to));
         }

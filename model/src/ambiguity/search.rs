@@ -15,13 +15,13 @@ use super::{
     space::States,
 };
 use crate::{
+    aid::{Aid, AnyAid, State},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{
         Class, Each, EnumeratedGraph, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
     },
     isomorphism::canonical,
-    marker::Marker,
-    world::State,
+    world::GraphWorld,
 };
 
 /// A search over all placed worlds of a class with 1 to some number of edges.
@@ -29,7 +29,7 @@ use crate::{
 pub struct AmbiguitySearch<'m> {
     /// The worlds of each size, from 1 edge.
     sizes: Vec<Enumeration>,
-    marker: &'m dyn Marker,
+    aid: AnyAid<'m>,
 }
 
 /// A part of a search: some worlds of one size.
@@ -66,20 +66,11 @@ impl<'m> AmbiguitySearch<'m> {
     ///
     /// # Errors
     /// Returns an error if they cannot be enumerated.
-    pub fn new(class: Class, edges: usize, marker: &'m dyn Marker) -> Result<Self, SizeError> {
+    pub fn new(class: Class, edges: usize, aid: impl Into<AnyAid<'m>>) -> Result<Self, SizeError> {
         // A number of edges that is refused is refused before those below it.
         Enumeration::new(Each::World, class, edges)?;
         let sizes = (1..=edges).map(|edges| Enumeration::new(Each::World, class, edges));
-        Ok(Self { sizes: sizes.collect::<Result<_, _>>()?, marker })
-    }
-
-    /// The most bytes that a candidate of this search has.
-    pub fn candidate_bytes(&self) -> usize {
-        let edges = self.sizes.len();
-        let darts = 2 * edges;
-        // The marker lies at one of the darts, or is carried.
-        let states = if self.marker.is_movable() { darts * (darts + 1) } else { darts };
-        AmbiguityCandidate::most_bytes(states, edges)
+        Ok(Self { sizes: sizes.collect::<Result<_, _>>()?, aid: aid.into() })
     }
 
     /// Makes the search. The result does not depend on the number of threads.
@@ -110,7 +101,7 @@ impl<'m> AmbiguitySearch<'m> {
             let placed_worlds = self.look_at(worlds, sorter.as_ref(), watch)?;
             sizes.push(SizeFindings { edges, placed_worlds, ambiguous: 0 });
         }
-        let mut grouping = Grouping::new(self.marker, sizes, kept, watch);
+        let mut grouping = Grouping::new(self.aid, sizes, kept, watch);
         for candidate in sorter.sorted().map_err(SearchError::Sorter)? {
             grouping.add(candidate.map_err(SearchError::Sorter)?)?;
         }
@@ -149,7 +140,7 @@ impl<'m> AmbiguitySearch<'m> {
         candidates.sort_unstable();
         let size = |edges| SizeFindings { edges, placed_worlds: 0, ambiguous: 0 };
         let sizes = (1..=self.sizes.len()).map(size).collect();
-        let mut grouping = Grouping::new(self.marker, sizes, kept, watch);
+        let mut grouping = Grouping::new(self.aid, sizes, kept, watch);
         for candidate in candidates {
             grouping.add(candidate)?;
         }
@@ -201,17 +192,17 @@ impl<'m> AmbiguitySearch<'m> {
         for places in self.placings(graph, automorphisms) {
             seen.placed_worlds += 1;
             let facing = places[0];
-            // The states of a world do not depend on where a movable marker lies at first.
-            let known = refined.take().filter(|_| self.marker.is_movable());
-            let (quotient, states) =
-                known.unwrap_or_else(|| Quotient::new(graph, self.marker, facing));
+            let start = GraphWorld::with_aid(graph, self.aid, facing);
+            // An aid that moves comes to the same states wherever it is at first.
+            let known =
+                refined.take().filter(|(_, states)| states.number(&start.state()).is_some());
+            let (quotient, states) = known.unwrap_or_else(|| Quotient::new(&start));
             // A world without two indistinguishable states shares its percepts only with its covers,
             // which have at least twice as many edges.
             if !quotient.is_discrete() || 2 * graph.edge_count() <= self.sizes.len() {
-                let placed_at = Some(self.marker.first_alike(graph, facing));
-                let begun = |&pose| states.number(State { pose, placed: placed_at });
-                let starts = self.marker.starts(graph, facing);
-                let codes = starts.iter().map(begun).map(|state| quotient.code(state));
+                let begun = |&pose| states.number(&State { pose, ..start.state() });
+                let starts = self.aid.starts(graph, facing);
+                let codes = starts.iter().filter_map(begun).map(|state| quotient.code(state));
                 if let Some(least) = codes.min() {
                     let placed = placed_code(graph, places);
                     seen.candidates.push(AmbiguityCandidate::new(&least, &placed));
@@ -226,7 +217,7 @@ impl<'m> AmbiguitySearch<'m> {
     fn placings(&self, graph: &EmbeddedGraph, automorphisms: u32) -> Vec<Vec<Dart>> {
         let mut alike = UnionFind::<u32>::new(graph.dart_count());
         for dart in graph.darts() {
-            alike.union(dart.0, self.marker.first_alike(graph, dart).0);
+            alike.union(dart.0, self.aid.first_alike(graph, dart).0);
         }
         if automorphisms > 1 {
             for (dart, least) in graph.darts().zip(canonical(graph).orbit) {
@@ -250,7 +241,7 @@ impl<'m> AmbiguitySearch<'m> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ambiguity::PlacedWorld, isomorphism::code, marker::named};
+    use crate::{aid::named, ambiguity::PlacedWorld, isomorphism::code};
 
     /// A cover has at least twice as many edges.
     #[test]

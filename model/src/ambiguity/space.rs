@@ -1,97 +1,167 @@
-//! All states of a placed world: where the robot can be, and where the marker.
+//! All states of a placed world: where the robot can be, and where its marking aid.
+
+use hashbrown::HashMap;
 
 use crate::{
+    aid::{Aid, AnyAid, Places, State},
     embedded_graph::{Dart, EmbeddedGraph},
-    marker::Marker,
     percept::Percept,
-    world::{Action, GraphWorld, State},
+    world::GraphWorld,
 };
 
-pub type PlacedRobot<'a> = GraphWorld<'a, &'a dyn Marker>;
+pub type PlacedRobot<'a> = GraphWorld<'a, AnyAid<'a>>;
 
-/// What a robot knows in a state without moving: its percept, and whether it carries the marker.
-pub(super) type StateLabel = (Percept, bool);
+/// What a robot knows in a state without moving: its percept, and what it holds.
+pub(super) type StateLabel = (Percept, u32);
 
-/// How many states a robot and the marker can be in, in a world: its poses, and for each of them, with
-/// a marker that can be moved, where this lies or that it is carried.
-pub fn state_count(graph: &EmbeddedGraph, marker: &dyn Marker) -> usize {
-    States::from_start(graph, marker, Dart(0)).len()
+/// Whether a robot and its aid can be in more than so many states from a start: its poses, and for each of them the states
+/// of an aid that moves.
+pub fn has_more_states<'a>(
+    graph: &'a EmbeddedGraph,
+    aid: impl Into<AnyAid<'a>>,
+    facing: Dart,
+    most: usize,
+) -> bool {
+    let start = GraphWorld::with_aid(graph, aid.into(), facing);
+    if start.aid().moves() {
+        Space::reachable(&start, most).is_none()
+    } else {
+        graph.dart_count() > most
+    }
 }
 
-/// The states of a placed world, numbered.
+/// The states of a placed world that are reachable from a start, numbered.
 #[derive(Clone, Debug)]
-pub(super) struct States {
-    darts: usize,
-    /// The places of the marker, each as the first of the facing darts alike.
-    places: Vec<Dart>,
-    /// Whether the robot can carry it: these states come after those of all places.
-    can_carry: bool,
+pub(super) enum States {
+    /// The poses, in the order of the darts; the aid stays.
+    Poses { darts: usize, placed: Places },
+    /// In the order in which they were met.
+    Met { list: Vec<State<Places>>, number: HashMap<State<Places>, u32> },
 }
 
 impl States {
-    pub(super) fn from_start(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> Self {
-        let can_carry = marker.is_movable();
-        let places = if can_carry {
-            graph.darts().filter(|&dart| marker.first_alike(graph, dart) == dart).collect()
-        } else {
-            vec![marker.first_alike(graph, facing)]
-        };
-        Self { darts: graph.dart_count(), places, can_carry }
-    }
-
     pub(super) fn len(&self) -> usize {
-        self.darts * (self.places.len() + usize::from(self.can_carry))
+        match self {
+            Self::Poses { darts, .. } => *darts,
+            Self::Met { list, .. } => list.len(),
+        }
     }
 
-    pub(super) fn state(&self, number: u32) -> State {
-        let place = number as usize / self.darts;
-        let pose = Dart(number % self.darts as u32);
-        State { pose, placed: self.places.get(place).copied() }
+    /// The state with a number, which must be less than their number.
+    pub(super) fn state(&self, number: u32) -> State<Places> {
+        match self {
+            Self::Poses { placed, .. } => State { pose: Dart(number), placed: placed.clone() },
+            Self::Met { list, .. } => list[number as usize].clone(),
+        }
     }
 
-    pub(super) fn number(&self, state: State) -> u32 {
-        let place = match state.placed {
-            Some(placed) => self.places.binary_search(&placed).unwrap_or_default(),
-            None => self.places.len(),
-        };
-        (place * self.darts) as u32 + state.pose.0
+    /// The number of a state, if it is reachable.
+    pub(super) fn number(&self, state: &State<Places>) -> Option<u32> {
+        match self {
+            Self::Poses { darts, placed } => {
+                (state.pose.at() < *darts && state.placed == *placed).then_some(state.pose.0)
+            }
+            Self::Met { number, .. } => number.get(state).copied(),
+        }
+    }
+
+    /// The number of a state, which is a new one if it was not met.
+    fn meet(&mut self, state: &State<Places>) -> u32 {
+        if let Some(number) = self.number(state) {
+            return number;
+        }
+        let new = self.len() as u32;
+        if let Self::Met { list, number } = self {
+            number.insert(state.clone(), new);
+            list.push(state.clone());
+        }
+        new
     }
 }
 
-/// What is sensed in each state of a placed world, and three maps of states to states that every
-/// action is made of: turn to the next dart, cross to the opposite one, and pick up or drop the
-/// marker, where that is possible (else stay).
+/// What is sensed in each state of a placed world, and where each action leads.
 ///
-/// A partition that keeps percepts and these maps keeps percepts and actions, for door `i` is `i`
+/// With a fixed marker, every action is made of two maps of states to states: turn to the next dart, and cross to the
+/// opposite one. A partition that keeps percepts and these maps keeps percepts and actions, for door `i` is `i`
 /// turns and a crossing. The converse holds too: crossing is door 0, and turning is door 1 and then
-/// door 0, which brings the robot back, having now come in by the next dart.
+/// door 0, which brings the robot back, having now come in by the next dart. With an aid that moves, map `i` is the
+/// action with that place in the list of the state's actions; states with the same label have the same actions.
+#[derive(Clone, Debug)]
 pub(super) struct Space {
+    pub(super) states: States,
     pub(super) labels: Vec<StateLabel>,
+    /// Where a state has fewer actions it stays.
     pub(super) maps: Vec<Vec<u32>>,
+    /// The number of maps of each state.
+    pub(super) arities: Vec<usize>,
 }
 
 impl Space {
-    pub(super) fn from_states(graph: &EmbeddedGraph, marker: &dyn Marker, states: &States) -> Self {
-        let count = states.len();
-        let mut labels = Vec::with_capacity(count);
-        let (mut turn, mut cross, mut handle) =
-            (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
-        // The state that it begins with does not matter.
-        let world = GraphWorld::with_marker(graph, marker, Dart(0));
-        for number in 0..count {
-            let state = states.state(number as u32);
-            let mut world = world.clone().at(state);
-            labels.push((world.sensed(), world.carries()));
-            turn.push(states.number(State { pose: graph.clockwise(state.pose), ..state }));
-            cross.push(states.number(State { pose: graph.opposite(state.pose), ..state }));
-            if states.can_carry {
-                // Where neither is possible, the state stays.
-                let _ = world.act(Action::PickUp).or_else(|_| world.act(Action::Drop));
-                handle.push(states.number(world.state()));
+    /// The states that are reachable.
+    pub(super) fn new(start: &PlacedRobot<'_>) -> Self {
+        if start.aid().moves() {
+            // There is no limit.
+            Self::reachable(start, usize::MAX).unwrap_or_else(|| Self::of_poses(start))
+        } else {
+            Self::of_poses(start)
+        }
+    }
+
+    /// The poses of a robot whose aid stays.
+    fn of_poses(start: &PlacedRobot<'_>) -> Self {
+        let (graph, aid, mut state) = (start.graph(), start.aid(), start.state());
+        let darts = graph.dart_count();
+        let label = |pose| {
+            state.pose = pose;
+            let percept = Percept {
+                degree: graph.degree_around(pose),
+                sighting: aid.sighting(graph, &state),
+            };
+            (percept, aid.held(&state))
+        };
+        Self {
+            labels: graph.darts().map(label).collect(),
+            maps: vec![
+                graph.darts().map(|dart| graph.clockwise(dart).0).collect(),
+                graph.darts().map(|dart| graph.opposite(dart).0).collect(),
+            ],
+            arities: vec![2; darts],
+            states: States::Poses { darts, placed: state.placed },
+        }
+    }
+
+    /// The states that are reachable by actions; `None` if there are more than `most`.
+    fn reachable(start: &PlacedRobot<'_>, most: usize) -> Option<Self> {
+        let mut states = States::Met { list: Vec::new(), number: HashMap::new() };
+        states.meet(&start.state());
+        let (mut labels, mut arities, mut leads) = (Vec::new(), Vec::new(), Vec::new());
+        let mut here = start.clone();
+        while labels.len() < states.len() {
+            let state = states.state(labels.len() as u32);
+            here = here.at(state.clone());
+            labels.push((here.sensed(), here.held()));
+            let actions = here.actions();
+            arities.push(actions.len());
+            for action in actions {
+                // Each action of a state is possible.
+                let _ = here.act(action);
+                leads.push(states.meet(&here.state()));
+                here = here.at(state.clone());
+            }
+            if states.len() > most {
+                return None;
             }
         }
-        let maps = if states.can_carry { vec![turn, cross, handle] } else { vec![turn, cross] };
-        Self { labels, maps }
+        let all = 0..states.len() as u32;
+        let mut maps: Vec<Vec<u32>> = Vec::new();
+        let mut leads = leads.into_iter();
+        for (number, &arity) in arities.iter().enumerate() {
+            maps.resize_with(maps.len().max(arity), || all.clone().collect());
+            for (map, to) in maps.iter_mut().zip(leads.by_ref().take(arity)) {
+                map[number] = to;
+            }
+        }
+        Some(Self { states, labels, maps, arities })
     }
 }
 
@@ -101,33 +171,52 @@ mod tests {
 
     use super::*;
     use crate::{
+        aid::{AIDS, Action},
         any_graph::{Class, any_graph},
-        marker::MARKERS,
         percept::Door,
     };
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
         #[test]
-        fn every_action_is_made_of_the_maps(graph in any_graph(Class::Multigraph, 6)) {
-            for marker in MARKERS {
-                let states = States::from_start(&graph, marker, Dart(0));
-                let space = Space::from_states(&graph, marker, &states);
-                for number in 0..states.len() as u32 {
-                    let state = states.state(number);
-                    prop_assert_eq!(states.number(state), number);
-                    let world = GraphWorld::with_marker(&graph, marker, Dart(0)).at(state);
-                    for action in world.actions() {
+        fn every_action_is_made_of_the_maps(graph in any_graph(Class::Multigraph, 3)) {
+            for aid in AIDS {
+                let start = GraphWorld::with_aid(&graph, aid.into(), Dart(0));
+                let space = Space::new(&start);
+                for number in 0..space.states.len() as u32 {
+                    let state = space.states.state(number);
+                    prop_assert_eq!(space.states.number(&state), Some(number));
+                    let world = start.clone().at(state);
+                    for (place, action) in world.actions().into_iter().enumerate() {
                         let mut world = world.clone();
                         world.act(action).unwrap();
                         let map = |map: usize, number: u32| space.maps[map][number as usize];
                         let expected = match action {
-                            Action::Take(Door(turns)) => {
+                            Action::Take(Door(turns)) if !aid.moves() => {
                                 map(1, (0..turns).fold(number, |number, _| map(0, number)))
                             }
-                            Action::PickUp | Action::Drop => map(2, number),
+                            _ => map(place, number),
                         };
-                        prop_assert_eq!(states.number(world.state()), expected);
+                        prop_assert_eq!(space.states.number(&world.state()), Some(expected));
                     }
+                }
+            }
+        }
+
+        /// A robot knows what it can do.
+        #[test]
+        fn states_with_the_same_label_have_the_same_actions(graph in any_graph(Class::Multigraph, 3)) {
+            for aid in AIDS {
+                let start = GraphWorld::with_aid(&graph, aid.into(), Dart(0));
+                let states = Space::new(&start).states;
+                let mut known: HashMap<StateLabel, Vec<Action>> = HashMap::new();
+                for state in (0..states.len() as u32).map(|number| states.state(number)) {
+                    let world = start.clone().at(state.clone());
+                    let actions = world.actions();
+                    let label = (world.sensed(), world.held());
+                    let same = known.entry(label).or_insert_with(|| actions.clone());
+                    prop_assert_eq!(&*same, &actions, "{:?} {:?}", aid, state);
                 }
             }
         }

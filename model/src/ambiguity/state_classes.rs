@@ -2,7 +2,7 @@
 //! the pairs of a [`Relation`](super::Relation) are quadratic.
 
 use super::space::{PlacedRobot, Space, StateLabel, States};
-use crate::{embedded_graph::Dart, world::State};
+use crate::aid::{Places, State};
 
 /// A partition of the states of two worlds: states of one class are indistinguishable.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ impl StateClasses {
     }
 
     /// The states of each class: those of the first world, and those of the second.
-    pub fn classes(&self) -> Vec<[Vec<State>; 2]> {
+    pub fn classes(&self) -> Vec<[Vec<State<Places>>; 2]> {
         let mut classes = vec![[Vec::new(), Vec::new()]; self.count];
         let (one, other) = self.class.split_at(self.states[0].len().min(self.class.len()));
         for (side, of_side) in [one, other].into_iter().enumerate() {
@@ -38,32 +38,37 @@ impl StateClasses {
 
     /// Whether this proves that the robots in the two worlds never perceive a difference: each state has
     /// a class, the robots are in states of one class, states of one class have the same percept, and
-    /// turning, crossing and handling the marker lead from them to states of one class.
+    /// what the robots can do leads from them to states of one class.
     // paper: fig1.base, fig1.step, fig1.cases
-    pub fn verify(&self, one: &PlacedRobot<'_>, other: &PlacedRobot<'_>) -> bool {
+    pub fn verify<'a>(&self, one: &PlacedRobot<'a>, other: &PlacedRobot<'a>) -> bool {
         /// What states of one class have in common.
-        type Common = (StateLabel, [Option<u32>; 3]);
+        type Common = (StateLabel, Vec<u32>);
         let mut common: Vec<Option<Common>> = vec![None; self.count];
         let mut first = 0;
         let mut starts = Vec::new();
-        for robot in [one, other] {
-            let marker = *robot.marker();
-            let placed = robot.state().placed.unwrap_or(Dart(0));
-            let states = States::from_start(robot.graph(), marker, placed);
-            let Some(class) = self.class.get(first..first + states.len()) else { return false };
-            let space = Space::from_states(robot.graph(), marker, &states);
+        for (robot, known) in [one, other].into_iter().zip(&self.states) {
+            let Some(class) = self.class.get(first..first + known.len()) else { return false };
+            let class_of = |state: &State<Places>| Some(class[known.number(state)? as usize]);
+            // The states of the robot's own world, which may be others than those that are known.
+            let space = Space::new(robot);
+            let states = (0..space.states.len() as u32).map(|number| space.states.state(number));
+            let classes: Option<Vec<u32>> = states.map(|state| class_of(&state)).collect();
+            let Some(classes) = classes.filter(|classes| classes.len() == known.len()) else {
+                return false;
+            };
             for (number, &label) in space.labels.iter().enumerate() {
-                let mut leads_to = [None; 3];
-                for (map, to) in space.maps.iter().zip(&mut leads_to) {
-                    *to = Some(class[map[number] as usize]);
-                }
-                let Some(common) = common.get_mut(class[number] as usize) else { return false };
-                if *common.get_or_insert((label, leads_to)) != (label, leads_to) {
+                let maps = &space.maps[..space.arities[number]];
+                let leads_to = maps.iter().map(|map| classes[map[number] as usize]).collect();
+                let this: Common = (label, leads_to);
+                let Some(common) = common.get_mut(classes[number] as usize) else { return false };
+                if common.as_ref().is_some_and(|common| *common != this) {
                     return false;
                 }
+                *common = Some(this);
             }
-            starts.push(class[states.number(robot.state()) as usize]);
-            first += states.len();
+            let Some(start) = class_of(&robot.state()) else { return false };
+            starts.push(start);
+            first += known.len();
         }
         first == self.class.len() && starts.windows(2).all(|pair| pair[0] == pair[1])
     }
@@ -73,17 +78,18 @@ impl StateClasses {
 mod tests {
     use super::*;
     use crate::{
+        aid::named,
         ambiguity::{Bisimulation, Comparison},
-        embedded_graph::EmbeddedGraph,
-        marker::named,
+        embedded_graph::{Dart, EmbeddedGraph},
     };
 
     #[test]
     fn classes_are_verified_only_if_their_states_are_indistinguishable() {
-        for kind in ["none", "directional", "movable"] {
+        for kind in ["none", "directional", "movable", "movable-directional", "string-1", "team-2"]
+        {
             let (one, other) = (EmbeddedGraph::chain(3), EmbeddedGraph::chain(3));
-            let marker = named(kind).unwrap();
-            let comparison = Comparison::new(marker, (&one, Dart(0)), (&other, Dart(0)));
+            let aid = named(kind).unwrap();
+            let comparison = Comparison::new(aid, (&one, Dart(0)), (&other, Dart(0)));
             let poses = [Dart(0); 2];
             let found = comparison.bisimulation(poses, 0, &()).unwrap().unwrap();
             let Bisimulation::Classes(classes) = found else { panic!("at most 0 pairs") };

@@ -16,6 +16,7 @@ use crate::{
     enumerate::Watch,
     isomorphism::StartCode,
     marker::Marker,
+    world::GraphWorld,
 };
 
 /// A placed world that a marker does not distinguish from another.
@@ -44,8 +45,6 @@ const MOST_DARTS: usize = 4096;
 /// The worlds with as many edges that are not isomorphic to a placed world, and that no walk distinguishes from
 /// it. The marker is placed by the facing dart, and the robot begins in the pose; each result is verified by a
 /// relation.
-///
-/// Worlds for a marker that can be moved are not searched.
 pub fn twins(
     graph: &EmbeddedGraph,
     marker: &dyn Marker,
@@ -53,10 +52,10 @@ pub fn twins(
     pose: Dart,
     watch: &dyn Watch,
 ) -> Twins {
-    if marker.is_movable() || graph.dart_count() > MOST_DARTS {
+    if graph.dart_count() > MOST_DARTS {
         return Twins { worlds: Vec::new(), may_be_more: true };
     }
-    let (quotient, _) = Quotient::new(graph, marker, facing);
+    let (quotient, _) = Quotient::new(&GraphWorld::with_aid(graph, marker.into(), facing));
     if quotient.is_discrete() {
         return Twins::default();
     }
@@ -248,7 +247,8 @@ mod tests {
                 // The starts of a world are its darts.
                 for graph in starts(Class::Multigraph, edges) {
                     let facing = Dart(0);
-                    let (quotient, _) = Quotient::new(&graph, marker, facing);
+                    let (quotient, _) =
+                        Quotient::new(&GraphWorld::with_aid(&graph, marker.into(), facing));
                     let starts = marker.starts(&graph, facing).into_iter();
                     let least = starts.map(|start| quotient.code(start.0)).min().unwrap();
                     let code = code_placed_by(&graph, marker, facing);

@@ -63,7 +63,7 @@ pub fn every_way<E: Explorer>(
     budget: u64,
     watch: &dyn Watch,
 ) -> Result<EveryWay, Flaw> {
-    let mut world = GraphWorld::with_marker(graph, explorer.marker(), facing);
+    let mut world = GraphWorld::with_aid(graph, explorer.aid(), facing);
     let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
     explorer.limit_darts(graph.dart_count());
     explorer.begin(&mut world)?;
@@ -119,7 +119,7 @@ struct SearchFrame<'g, E: Explorer> {
     key: Option<StateKey>,
     /// Whether it follows the state within a round in which no hypothesis is left: the place is new.
     is_new_place: bool,
-    world: GraphWorld<'g, E::Marker>,
+    world: GraphWorld<'g, E::Aid>,
     explorer: E,
     choices: vec::IntoIter<E::Choice>,
     moves: u64,
@@ -145,7 +145,7 @@ struct Search<'g, 'w, E: Explorer> {
 
 impl<'g, E: Explorer> Search<'g, '_, E> {
     /// What can follow the first state. The stack is explicit: it is as deep as the run has choices.
-    fn run(&mut self, world: GraphWorld<'g, E::Marker>, explorer: E) -> Result<Futures, Flaw> {
+    fn run(&mut self, world: GraphWorld<'g, E::Aid>, explorer: E) -> Result<Futures, Flaw> {
         let mut found = self.enter(world, explorer)?;
         while let Some(frame) = self.stack.last_mut() {
             if let Some(futures) = found.take() {
@@ -185,7 +185,7 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
     /// the stack.
     fn enter(
         &mut self,
-        world: GraphWorld<'g, E::Marker>,
+        world: GraphWorld<'g, E::Aid>,
         mut explorer: E,
     ) -> Result<Option<Futures>, Flaw> {
         let key = explorer.state_key();
@@ -321,7 +321,7 @@ mod tests {
     }
 
     impl Explorer for Altered {
-        delegate_to_run!(MappingChoice);
+        delegate_to_run!(MarkerKind, MappingChoice);
 
         fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
             let choices = self.run.choices()?.into_iter().map(|choice| match choice {

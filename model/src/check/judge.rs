@@ -21,7 +21,7 @@ use crate::{
 pub fn judge<'c, E: Explorer>(
     explorer: &E,
     facing: Dart,
-    world: &GraphWorld<E::Marker>,
+    world: &GraphWorld<E::Aid>,
     candidate: &'c mut Candidate,
 ) -> Result<&'c Bijection, Flaw> {
     let (graph, moves) = (world.graph(), world.moves());
@@ -54,9 +54,9 @@ fn bounded_world<'g, E: Explorer>(
     explorer: &E,
     graph: &'g EmbeddedGraph,
     facing: Dart,
-) -> GraphWorld<'g, E::Marker> {
+) -> GraphWorld<'g, E::Aid> {
     let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
-    GraphWorld::with_marker(graph, explorer.marker(), facing).with_bound(bound)
+    GraphWorld::with_aid(graph, explorer.aid(), facing).with_bound(bound)
 }
 
 /// Judges a map: it is isomorphic to the world as a start, by a bijection that is verified and
@@ -118,7 +118,7 @@ pub fn first_false_step<E: Explorer>(
     facing: Dart,
 ) -> Option<FalseStep> {
     let mut first = None;
-    let mut watch = |_: &mut GraphWorld<E::Marker>, walk: &MapWalk, added: MappingEvent| {
+    let mut watch = |_: &mut GraphWorld<E::Aid>, walk: &MapWalk, added: MappingEvent| {
         let adds =
             matches!(added, MappingEvent::LoopClosed { .. } | MappingEvent::VertexAdded { .. });
         if adds && first.is_none() && !embeds(walk.map(), graph, facing) {

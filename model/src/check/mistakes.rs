@@ -5,6 +5,7 @@ use std::{borrow::Cow, fmt, ops::ControlFlow};
 
 use super::judge_map;
 use crate::{
+    aid::{RefusedAction, State},
     counts::counted,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{
@@ -13,7 +14,7 @@ use crate::{
     isomorphism::Candidate,
     mapping::{ExploredMap, FACING, Flaw, MappingError, MappingMethod, Relocate},
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, RefusedAction, State, World},
+    world::{GraphWorld, World},
 };
 
 crate::words! {

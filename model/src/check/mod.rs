@@ -47,7 +47,7 @@ mod tests {
         ) {
             let facing = Dart(facing.index(graph.dart_count()) as u32);
             let mut run = MovableMarkerRun::new(graph.dart_count());
-            let mut world = GraphWorld::with_marker(&graph, run.marker(), facing);
+            let mut world = GraphWorld::with_aid(&graph, run.aid(), facing);
             let mut numbers = numbers.iter().cycle();
             let explored = explore_with(&mut run, &mut world, |run| {
                 let open = run.choices()?;

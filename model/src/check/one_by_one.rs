@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::{FailedStart, RunChoices, Tally, WorstStart, judge_start};
 use crate::{
+    aid::Aid,
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration, SizeError, Watch, in_parts},
     folding::MarkerTree,
@@ -157,7 +158,7 @@ struct StartChecker<'a, E, N> {
 impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
     fn new(new: &'a N, choices: RunChoices, watch: &'a dyn Watch) -> Self {
         let explorer = new();
-        let directional = explorer.marker().name() == Directional.name();
+        let directional = explorer.aid().name() == Marker::name(&Directional);
         let certificates = directional.then(MarkerTree::default);
         Self { new, explorer, choices, watch, candidate: Candidate::default(), certificates }
     }

@@ -37,12 +37,12 @@ pub(crate) fn too_large(step: &str, darts: u32) -> String {
 
 /// The items of an [`Explorer`] that are those of its field `run`.
 macro_rules! delegate_to_run {
-    ($choice:ty) => {
-        type Marker = MarkerKind;
+    ($aid:ty, $choice:ty) => {
+        type Aid = $aid;
         type Choice = $choice;
 
-        fn marker(&self) -> MarkerKind {
-            self.run.marker()
+        fn aid(&self) -> $aid {
+            self.run.aid()
         }
 
         fn limit_darts(&mut self, max_darts: usize) {

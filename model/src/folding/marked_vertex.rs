@@ -73,7 +73,7 @@ mod tests {
 
     /// The folded trail of a walk with an undirected marker at the start.
     fn walked(graph: &EmbeddedGraph, start: Dart, doors: &[u32]) -> FoldedTrail {
-        let world = GraphWorld::with_marker(graph, Undirected, start);
+        let world = GraphWorld::with_aid(graph, Undirected, start);
         let (percepts, doors) = walk(world, doors.iter().copied());
         fold(&percepts, &doors).unwrap()
     }

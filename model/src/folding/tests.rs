@@ -4,12 +4,13 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
+    aid::State,
     any_graph::{Class, any_graph, starts, walk},
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::code,
     marker::{DirectedEdge, Directional, Marker, NoMarker},
     percept::Sighting,
-    world::{GraphWorld, State, World},
+    world::{GraphWorld, World},
 };
 
 /// What a robot perceives from a pose on a walk, and its doors.
@@ -20,7 +21,7 @@ fn walk_with<M: Marker + Copy>(
     pose: Dart,
     turns: &[u8],
 ) -> (Vec<Percept>, Vec<Door>) {
-    let world = GraphWorld::with_marker(graph, marker, facing);
+    let world = GraphWorld::with_aid(graph, marker, facing);
     let world = world.clone().at(State { pose, ..world.state() });
     walk(world, turns.iter().copied().map(u32::from))
 }
@@ -123,8 +124,8 @@ fn explains(
             world.sensed() == percept && door.is_none_or(|door| world.traverse(door).is_ok())
         })
     };
-    let bare = GraphWorld::with_marker(graph, &NoMarker as &dyn Marker, Dart(0));
-    let marked = graph.darts().map(|facing| GraphWorld::with_marker(graph, marker, facing));
+    let bare = GraphWorld::with_aid(graph, &NoMarker as &dyn Marker, Dart(0));
+    let marked = graph.darts().map(|facing| GraphWorld::with_aid(graph, marker, facing));
     marked.chain([bare]).any(|world| {
         graph.darts().any(|pose| fits(world.clone().at(State { pose, ..world.state() })))
     })

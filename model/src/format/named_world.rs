@@ -3,12 +3,11 @@
 use thiserror::Error;
 
 use crate::{
+    aid::{Aid, AidKind, PlaceNames, State},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     floor_plan::FloorPlan,
     isomorphism::as_discovered,
-    marker::Marker,
     similar::similar_name,
-    world::State,
 };
 
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +21,7 @@ pub struct NamedWorld {
     /// The facing dart, if the file has a start.
     pub start: Option<Dart>,
     /// The kind of marker that the world is about, if the file has one.
-    pub marker: Option<&'static dyn Marker>,
+    pub marker: Option<AidKind>,
     pub vertex_names: Vec<String>,
     /// The name of each dart's edge; `None` if the file lists neighbours, which it can only do for a
     /// simple graph.
@@ -177,15 +176,9 @@ impl NamedWorld {
     }
 
     /// A state of a robot in this world: its pose as `vertex:door`, where the first door that is listed
-    /// at the vertex is 0; and the place of a movable marker: `@vertex`, or `+marker` while the robot
-    /// carries it.
-    pub fn state_text(&self, marker: &impl Marker, state: State) -> String {
-        let pose = format!("{}:{}", self.at_text(state.pose), self.graph.index(state.pose));
-        match state.placed {
-            _ if !marker.is_movable() => pose,
-            Some(placed) => format!("{pose}@{}", self.at_text(placed)),
-            None => format!("{pose}+marker"),
-        }
+    /// at the vertex is 0; and the state of an aid that moves: see [`Aid::placed_text`].
+    pub fn state_text<A: Aid>(&self, aid: &A, state: &State<A::Placed>) -> String {
+        self.dart(state.pose) + &aid.placed_text(&state.placed, self)
     }
 
     pub fn at_text(&self, dart: Dart) -> &str {
@@ -221,6 +214,16 @@ impl NamedWorld {
         let more = if darts.len() > SHOWN { ", ..." } else { "" };
         let shown: Vec<_> = darts.take(SHOWN).map(|dart| self.facing_text(dart)).collect();
         shown.join(", ") + more
+    }
+}
+
+impl PlaceNames for NamedWorld {
+    fn vertex(&self, dart: Dart) -> String {
+        self.at_text(dart).to_owned()
+    }
+
+    fn dart(&self, dart: Dart) -> String {
+        format!("{}:{}", self.at_text(dart), self.graph.index(dart))
     }
 }
 

@@ -63,7 +63,7 @@ impl Default for CurrentVertex {
 /// Algorithm 1. The default choices are the nearest edge and the nearest hypothesis.
 // paper: alg1.return, alg1.terminates, alg1.every-world
 impl Explorer for Algorithm1Run {
-    type Marker = MarkerKind;
+    type Aid = MarkerKind;
     type Choice = MappingChoice;
 
     const INFO: ExplorerInfo = ExplorerInfo {
@@ -73,7 +73,7 @@ impl Explorer for Algorithm1Run {
         order: CostOrder::EdgesSquaredVertices,
     };
 
-    fn marker(&self) -> MarkerKind {
+    fn aid(&self) -> MarkerKind {
         Directional
     }
 

@@ -10,10 +10,11 @@ use super::{
     SafeguardEvent,
 };
 use crate::{
+    aid::State,
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     folding::{MarkerTree, certificate_darts},
     percept::{Door, Percept},
-    world::{GraphWorld, State, World},
+    world::{GraphWorld, World},
 };
 
 /// A move of an audit after which the percept agreed with the map.

@@ -5,11 +5,11 @@ use std::fmt;
 use thiserror::Error;
 
 use crate::{
+    aid::RefusedAction,
     counts::grouped,
     embedded_graph::{Dart, GraphError, Vertex},
     folding::{ContradictionReason, MAX_DARTS, TrailError},
     percept::{Percept, Sighting},
-    world::RefusedAction,
 };
 
 /// Why a map could not be made.

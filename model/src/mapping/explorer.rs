@@ -12,8 +12,8 @@ use super::{
     ExploredMap, FACING, Flaw, InvalidStep, MapWalk, Mapped, ObservedWorld, PartialMap, StepPurpose,
 };
 use crate::{
+    aid::Aid,
     embedded_graph::{Dart, Vertex},
-    marker::Marker,
 };
 
 /// An explorer: the state of a run that maps a world.
@@ -28,7 +28,8 @@ use crate::{
 /// darts. The state then holds what is known so far.
 #[expect(clippy::missing_errors_doc, reason = "see above")]
 pub trait Explorer: Clone {
-    type Marker: Marker + Clone;
+    /// The marking aid with which it maps.
+    type Aid: Aid + Clone;
 
     type Choice: Copy + fmt::Debug + PartialEq;
 
@@ -40,7 +41,7 @@ pub trait Explorer: Clone {
         order: CostOrder::EdgesSquaredVertices,
     };
 
-    fn marker(&self) -> Self::Marker;
+    fn aid(&self) -> Self::Aid;
 
     /// Limits the darts that later runs may come to know. Beyond that they end with
     /// [`MappingError::Bound`](super::MappingError::Bound).

@@ -7,11 +7,11 @@ use super::{
     folding_explorer::ArrivalMeasurement, tree::BreadthFirstTree,
 };
 use crate::{
+    aid::Aid,
     clone_in_place::clone_in_place,
     embedded_graph::{Dart, MAX_EDGES, Vertex},
-    marker::Marker,
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, MarkerCarrier, World},
+    world::{AidHandler, GraphWorld, World},
 };
 
 /// The default bound on known darts. A run in a world with more than 8,000 edges, or with infinitely
@@ -49,7 +49,7 @@ pub trait ObservedWorld: World {
     fn event(&mut self, _walk: &MapWalk, _event: MappingEvent) {}
 }
 
-impl<M: Marker> ObservedWorld for GraphWorld<'_, M> {}
+impl<A: Aid> ObservedWorld for GraphWorld<'_, A> {}
 
 /// A world with an observer.
 #[derive(Debug)]
@@ -77,8 +77,8 @@ impl<W: World, O: Observer<W>> World for Observed<'_, W, O> {
         self.world.traverse(door)
     }
 
-    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = W::Error>> {
-        self.world.carrier()
+    fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = W::Error>> {
+        self.world.handler()
     }
 }
 

@@ -3,10 +3,7 @@
 use std::{fmt, str::FromStr};
 
 use super::{Explorer, ExplorerInfo, MapWalk, Mapped, Observed, Observer, explore};
-use crate::{
-    marker::{self, Directional, Marker},
-    world::World,
-};
+use crate::{aid::AidKind, world::World};
 
 /// Declares the algorithms: for each its name here and its explorer.
 macro_rules! algorithms {
@@ -59,15 +56,14 @@ impl MappingAlgorithm {
         self.info().in_words
     }
 
-    /// The marker with which it maps.
-    pub fn marker(self) -> &'static dyn Marker {
-        let name = with_explorer!(self, E => E::default().marker().name());
-        marker::named(name).unwrap_or(&Directional)
+    /// The marking aid with which it maps.
+    pub fn aid(self) -> AidKind {
+        with_explorer!(self, E => E::default().aid().into())
     }
 
     /// The algorithms of a robot that cannot carry its marker.
     pub fn with_fixed_marker() -> impl Iterator<Item = Self> {
-        Self::ALL.iter().copied().filter(|algorithm| !algorithm.marker().is_movable())
+        Self::ALL.iter().copied().filter(|algorithm| !algorithm.aid().moves())
     }
 
     /// The most moves that it may make in a world of this size.

@@ -4,9 +4,9 @@ use std::fmt;
 
 use super::{Contradiction, InvalidStep, PartialMap};
 use crate::{
+    aid::{Action, AidAction},
     embedded_graph::{Dart, Vertex},
     percept::{Door, Percept},
-    world::Action,
 };
 
 /// An event of a run. Vertices and darts are those of the map. `edge` is the known end of the edge that is explored.
@@ -52,8 +52,8 @@ impl MappingEvent {
     pub fn action(self) -> Option<Action> {
         match self {
             Self::Moved { door, .. } => Some(Action::Take(door)),
-            Self::Movable(MovableEvent::PickedUp) => Some(Action::PickUp),
-            Self::Movable(MovableEvent::Dropped) => Some(Action::Drop),
+            Self::Movable(MovableEvent::PickedUp) => Some(Action::Do(AidAction::PickUp)),
+            Self::Movable(MovableEvent::Dropped) => Some(Action::Do(AidAction::Drop)),
             _ => None,
         }
     }

@@ -145,13 +145,14 @@ impl FromStr for MappingMethod {
 mod tests {
     use super::*;
     use crate::{
+        aid::{RefusedAction, State},
         any_graph::by_neighbours,
         embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::Bijection,
         mapping::{ArrivalMeasurement, FACING},
         measurement::{HallwayMeasurement, MeasurementNoise},
         percept::{Door, Percept},
-        world::{GraphWorld, RefusedAction, State, World},
+        world::{GraphWorld, World},
     };
 
     /// Two triangles that share a vertex, and a dead end at it.

@@ -11,11 +11,14 @@ use super::{
     map_walk::has_walk,
 };
 use crate::{
+    aid::{
+        AidAction,
+        markers::{MOVABLE, MovableMarkers},
+    },
     clone_in_place::clone_in_place,
     embedded_graph::{Dart, Vertex},
-    marker::{MarkerKind, Movable},
     percept::{Door, Percept, Sighting},
-    world::{MarkerCarrier, World},
+    world::World,
 };
 
 /// The state of a run with a movable marker: the robot's walk, and the candidates.
@@ -42,7 +45,7 @@ has_walk!(MovableMarkerRun);
 /// With loops or parallel edges one movable marker does not suffice: the map is then wrong, or the
 /// run ends with an error.
 impl Explorer for MovableMarkerRun {
-    type Marker = MarkerKind;
+    type Aid = MovableMarkers;
     type Choice = Dart;
 
     const INFO: ExplorerInfo = ExplorerInfo {
@@ -52,8 +55,8 @@ impl Explorer for MovableMarkerRun {
         order: CostOrder::EdgesVertices,
     };
 
-    fn marker(&self) -> MarkerKind {
-        Movable
+    fn aid(&self) -> MovableMarkers {
+        MOVABLE
     }
 
     fn limit_darts(&mut self, max_darts: usize) {
@@ -139,10 +142,10 @@ fn marked(place: Percept) -> Percept {
     Percept { sighting: Sighting::Lying(1), ..place }
 }
 
-fn carrier<W: World>(
-    world: &mut W,
-) -> Result<&mut dyn MarkerCarrier<Error = W::Error>, InvalidStep> {
-    world.carrier().ok_or(InvalidStep::NoMovableMarker)
+/// Does an action with the marker.
+fn handle<W: World>(action: AidAction, world: &mut W) -> Mapped<W> {
+    let handler = world.handler().ok_or(InvalidStep::NoMovableMarker)?;
+    handler.handle(action).map_err(MappingError::World)
 }
 
 impl MovableMarkerRun {
@@ -254,13 +257,13 @@ impl MovableMarkerRun {
     }
 
     fn drop_marker<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
-        carrier(world)?.drop().map_err(MappingError::World)?;
+        handle(AidAction::Drop, world)?;
         self.report(MovableEvent::Dropped, world);
         Ok(())
     }
 
     fn pick_up<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
-        carrier(world)?.pick_up().map_err(MappingError::World)?;
+        handle(AidAction::PickUp, world)?;
         self.report(MovableEvent::PickedUp, world);
         Ok(())
     }

@@ -2,10 +2,11 @@
 
 use super::{Trace, TraceEvent, TraceEventKind};
 use crate::{
+    aid::{RefusedAction, State},
     embedded_graph::EmbeddedGraph,
     marker::Marker,
     percept::{Percept, WalkEvent},
-    world::{GraphWorld, RefusedAction, State, World},
+    world::{GraphWorld, World},
 };
 
 /// The possible states of a robot in a known world, event by event.
@@ -39,7 +40,7 @@ pub enum MisfitReason {
 
 /// The states of a robot that has just put its marker down along its entry dart, at every dart.
 pub fn anywhere(graph: &EmbeddedGraph, marker: &impl Marker) -> Vec<State> {
-    let start = |facing| GraphWorld::with_marker(graph, marker, facing).state();
+    let start = |facing| GraphWorld::with_aid(graph, marker, facing).state();
     graph.darts().map(start).collect()
 }
 
@@ -110,8 +111,7 @@ fn after(
     state: State,
     event: TraceEventKind,
 ) -> Result<State, MisfitReason> {
-    let Some(facing) = state.placed else { return Ok(state) };
-    let mut world = GraphWorld::with_marker(graph, marker, facing).at(state);
+    let mut world = GraphWorld::with_aid(graph, marker, state.placed).at(state);
     match event {
         TraceEventKind::Percept(percept) => {
             let expected = world.sensed();

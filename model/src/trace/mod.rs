@@ -220,15 +220,16 @@ impl Trace {
 pub(crate) mod tests {
     use super::*;
     use crate::{
+        aid::Aid,
+        aid::RefusedAction,
         any_graph::{by_neighbours, walk},
         embedded_graph::{Dart, EmbeddedGraph},
         mapping::{
             MapWalk, MappingAlgorithm, MappingError, MappingEvent, Observed, Observer, explore,
             with_explorer,
         },
-        marker::Marker,
         percept::Sighting,
-        world::{GraphWorld, RefusedAction},
+        world::GraphWorld,
     };
 
     impl Trace {
@@ -240,8 +241,8 @@ pub(crate) mod tests {
     }
 
     /// What a robot perceives on a walk.
-    pub(crate) fn recorded<M: Marker>(
-        world: GraphWorld<'_, M>,
+    pub(crate) fn recorded<A: Aid>(
+        world: GraphWorld<'_, A>,
         turns: impl IntoIterator<Item = u32>,
     ) -> Trace {
         let (percepts, doors) = walk(world, turns);

@@ -15,15 +15,15 @@ use super::{
     in_world::VisitStep,
 };
 use crate::{
+    aid::State,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     mapping::{
         Explorer, InvalidStep, MappingAlgorithm, MappingError, PartialMap, StateKey, with_explorer,
     },
-    marker::Marker,
+    marker::MarkerKind,
     percept::{Door, Percept, Sighting},
     trace::{Trace, TraceEventKind, TraceWorld, TraceWorldError},
-    world::State,
 };
 
 /// The limits of a search.
@@ -79,7 +79,7 @@ struct Branch<'g, E: Explorer> {
 
 struct Search {
     algorithm: MappingAlgorithm,
-    marker: &'static dyn Marker,
+    marker: MarkerKind,
     bounds: AlgorithmSearchBounds,
     steps: usize,
     /// Whether a run would know too many darts.
@@ -97,10 +97,7 @@ pub fn explain_by_algorithm(
     bounds: AlgorithmSearchBounds,
     watch: &dyn Watch,
 ) -> Explanation {
-    let marker = algorithm.marker();
-    if marker.is_movable() {
-        return Explanation::NotKnown;
-    }
+    let Some(marker) = algorithm.aid().fixed() else { return Explanation::NotKnown };
     let place = world.map_or_else(
         || Place::InSomeWorld(VisitWalk::begin()),
         |(graph, states)| Place::InWorld(graph, states.to_vec()),
@@ -225,7 +222,7 @@ impl<E: Explorer> Run<E> {
 
 impl Place<'_> {
     /// Where the robot may be after a visit to a vertex.
-    fn after(&self, vertex: VisitAlternative, marker: &'static dyn Marker) -> Option<Self> {
+    fn after(&self, vertex: VisitAlternative, marker: MarkerKind) -> Option<Self> {
         match self {
             &Self::InWorld(graph, ref before) => {
                 let (way, is_last) = (VisitWay::Through, vertex.door.is_none());

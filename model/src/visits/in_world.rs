@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 
 use super::{VisitAlternative, VisitSet, VisitWay};
 use crate::{
+    aid::State,
     embedded_graph::{Dart, EmbeddedGraph},
     marker::Marker,
-    world::{GraphWorld, State},
+    world::GraphWorld,
 };
 
 /// The states in which a robot may be after each visit, sorted, up to the first visit that fits none; its set is empty.
@@ -87,7 +88,7 @@ impl<M: Marker> VisitStep<'_, M> {
             let back = way == VisitWay::Back;
             return vec![if back { at(graph.opposite(state.pose)) } else { state }];
         };
-        let world = GraphWorld::with_marker(graph, marker, state.placed.unwrap_or(state.pose));
+        let world = GraphWorld::with_aid(graph, marker, state.placed);
         if alternative.percept != world.at(state).sensed() {
             return Vec::new();
         }

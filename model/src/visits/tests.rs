@@ -6,6 +6,7 @@ use proptest::{collection::vec, prelude::*};
 
 use super::*;
 use crate::{
+    aid::State,
     any_graph::{Class, StopAt, any_graph, by_neighbours, starts},
     embedded_graph::{Dart, EmbeddedGraph},
     mapping::MappingAlgorithm,
@@ -15,7 +16,7 @@ use crate::{
         MatchEnd, Trace, TraceClaim, TraceEventKind, anywhere, match_algorithm, poses,
         tests::{explored_by, lollipop},
     },
-    world::{GraphWorld, State, World},
+    world::{GraphWorld, World},
 };
 
 #[expect(clippy::unnecessary_wraps, reason = "as it is among alternatives")]
@@ -47,7 +48,7 @@ fn drives(
     start: State,
     choice: &[VisitSet],
 ) -> bool {
-    let mut world = GraphWorld::with_marker(graph, marker, start.pose).at(start);
+    let mut world = GraphWorld::with_aid(graph, marker, start.pose).at(start);
     // The robot is somewhere on the edge before the vertex that the world has it at; to turn back there is to drive
     // on to the vertex, to take the way back, and to be before the other end of the edge.
     for visit in choice {

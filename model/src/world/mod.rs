@@ -2,9 +2,12 @@
 
 mod graph_world;
 
-pub use graph_world::{Action, GraphWorld, RefusedAction, State, UnknownAction};
+pub use graph_world::GraphWorld;
 
-use crate::percept::{Door, Percept};
+use crate::{
+    aid::AidAction,
+    percept::{Door, Percept},
+};
 
 /// Everything that a robot can sense of its world and do in it.
 // paper: world.interface, percept.no-metric
@@ -25,26 +28,20 @@ pub trait World {
     // paper: motion.door, motion.arrival
     fn traverse(&mut self, door: Door) -> Result<(), Self::Error>;
 
-    /// What carries the robot's marker; `None` if the robot cannot carry it.
-    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = Self::Error>> {
+    /// What does the actions beside doors; `None` if the robot has none.
+    fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = Self::Error>> {
         None
     }
 }
 
-/// All that a robot can do with a movable marker, besides.
+/// All that a robot can do with its marking aid, besides.
 // paper: world.interface
-pub trait MarkerCarrier {
+pub trait AidHandler {
     type Error;
 
-    /// Picks the marker up where the robot is, to carry it.
+    /// Does an action with the aid.
     ///
     /// # Errors
-    /// Returns an error if the marker is not here, or cannot be moved.
-    fn pick_up(&mut self) -> Result<(), Self::Error>;
-
-    /// Drops the marker where the robot is.
-    ///
-    /// # Errors
-    /// Returns an error if the robot does not carry it.
-    fn drop(&mut self) -> Result<(), Self::Error>;
+    /// Returns an error if it is not possible.
+    fn handle(&mut self, action: AidAction) -> Result<(), Self::Error>;
 }

@@ -3,7 +3,7 @@
 
 use toposlam_model::{
     embedded_graph::{GraphError, MAX_EDGES, size_fault},
-    percept::{Door, Percept, Sighting},
+    percept::{Door, MarkerSet, Percept, Sighting},
 };
 
 use crate::{
@@ -90,13 +90,16 @@ fn doors<C: Choose, const NIBBLES: u32>(choose: &mut C) -> CaseResult {
 
 fn turned<C: Choose, const NIBBLES: u32>(choose: &mut C) -> CaseResult {
     let [door, entry, degree] = darts_and_degree::<NIBBLES>(choose)?;
+    let these = |numbers: &[usize]| {
+        MarkerSet::from_numbers(numbers.iter().copied()).map_or(Sighting::Nothing, Sighting::These)
+    };
     let sighting = match choose.below(6) {
         0 => Sighting::Nothing,
         1 => Sighting::Pointing(Door(door)),
         2 => Sighting::Lying(door),
-        3 => Sighting::First,
-        4 => Sighting::Second,
-        _ => Sighting::Both,
+        3 => these(&[0]),
+        4 => these(&[1]),
+        _ => these(&[0, 1]),
     };
     let percept = Percept { degree, sighting };
     let turned = percept.seen_from(Door(entry));

@@ -2,10 +2,11 @@
 //! bisimulations, and related robots perceive the same for ever. Section 2.2.
 
 use toposlam_model::{
+    aid::{AIDS, AidKind, AnyAid, Places, State},
     ambiguity::{Comparison, PlacedRobot, Relation},
     embedded_graph::{Dart, EmbeddedGraph},
-    marker::{MARKERS, Marker, Undirected},
-    world::{GraphWorld, State},
+    marker::Undirected,
+    world::GraphWorld,
 };
 
 use crate::{
@@ -53,10 +54,13 @@ declare! {
     }
 }
 
-fn marker(choose: &mut impl Choose, of: impl Fn(&dyn Marker) -> bool) -> &'static dyn Marker {
-    let kinds = || MARKERS.into_iter().filter(|&marker| of(marker));
+/// The fixed markers, and the one that can be carried.
+const MARKERS: usize = 8;
+
+fn marker(choose: &mut impl Choose, of: impl Fn(AidKind) -> bool) -> AidKind {
+    let kinds = || AIDS[..MARKERS].iter().copied().filter(|&marker| of(marker));
     let place = choose.below(kinds().count() as u8);
-    let marker = kinds().nth(place.into()).unwrap_or(&Undirected);
+    let marker = kinds().nth(place.into()).unwrap_or(Undirected.into());
     choose.show(|| Exhibit::Value { name: "marker", value: marker.name().to_owned() });
     marker
 }
@@ -64,7 +68,7 @@ fn marker(choose: &mut impl Choose, of: impl Fn(&dyn Marker) -> bool) -> &'stati
 /// Two starts that the marker cannot distinguish, their comparison, and its certificate.
 fn certified<'g, C: Choose>(
     choose: &mut C,
-    marker: &'static dyn Marker,
+    marker: AidKind,
     [one, other]: [&'g EmbeddedGraph; 2],
 ) -> Result<([PlacedRobot<'g>; 2], Relation), Stop> {
     let comparison = Comparison::new(marker, (one, Dart(0)), (other, Dart(0)));
@@ -81,10 +85,10 @@ fn certified<'g, C: Choose>(
 }
 
 fn shown(Relation(pairs): &Relation) -> Exhibit {
-    let pair = |(here, there): &(State, State)| {
-        let placed = |state: &State| match state.placed {
-            Some(dart) => format!("{} (marker at {})", state.pose.0, dart.0),
-            None => format!("{} (carrying)", state.pose.0),
+    let pair = |(here, there): &(State<Places>, State<Places>)| {
+        let placed = |state: &State<Places>| match state.placed[..] {
+            [Some(dart)] => format!("{} (marker at {})", state.pose.0, dart.0),
+            _ => format!("{} (carrying)", state.pose.0),
         };
         format!("{} ~ {}", placed(here), placed(there))
     };
@@ -99,12 +103,12 @@ fn for_ever<C: Choose, const LEAST: usize, const MOST: usize, const ACTIONS: usi
     let one = draw::start_of::<LEAST, MOST>(choose)?;
     let other = draw::start_of::<LEAST, MOST>(choose)?;
     let ([here, there], Relation(pairs)) = certified(choose, marker, [&one, &other])?;
-    let (one, other) = pairs[usize::from(choose.below(pairs.len() as u8))];
-    let (mut here, mut there) = (here.at(one), there.at(other));
+    let (one, other) = pairs[usize::from(choose.below(pairs.len() as u8))].clone();
+    let (mut here, mut there) = (here.at(one.clone()), there.at(other.clone()));
     let mut done = Vec::new();
     let mut agree = here.sensed() == there.sensed();
     for _ in 0..choose.below(ACTIONS as u8 + 1) {
-        let can: Vec<_> = here.actions().collect();
+        let can = here.actions();
         let action = can[usize::from(choose.below(can.len() as u8))];
         done.push(action.to_string());
         agree = agree
@@ -118,11 +122,11 @@ fn for_ever<C: Choose, const LEAST: usize, const MOST: usize, const ACTIONS: usi
 }
 
 fn verified<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
-    let marker = marker(choose, |marker| !marker.is_movable());
+    let marker = marker(choose, |marker| !marker.moves());
     let one = draw::start::<MOST>(choose, LEAST)?;
     let other = draw::start_of::<1, MOST>(choose)?;
-    let here = GraphWorld::with_marker(&one, marker, Dart(0));
-    let there = GraphWorld::with_marker(&other, marker, Dart(0));
+    let here = GraphWorld::with_aid(&one, AnyAid::from(marker), Dart(0));
+    let there = GraphWorld::with_aid(&other, AnyAid::from(marker), Dart(0));
     let mut pairs = Vec::new();
     for one in one.darts() {
         for other in other.darts() {
@@ -145,7 +149,8 @@ fn altered<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> 
     let ([one, other], mut relation) = certified(choose, marker, [&one, &other])?;
     // A dart of either world, or one that neither has.
     let dart = |choose: &mut C| Dart(choose.below(2 * MOST as u8 + 1).into());
-    let placed = |choose: &mut C| (choose.below(2) == 1).then(|| dart(choose));
+    let placed =
+        |choose: &mut C| Places::from_elem((choose.below(2) == 1).then(|| dart(choose)), 1);
     match choose.below(4) {
         0 => {
             relation.0.remove(usize::from(choose.below(relation.0.len() as u8)));
@@ -153,14 +158,15 @@ fn altered<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> 
         1 => {
             // The whole certificate, with the marker elsewhere, or nowhere.
             let (here, there) = (placed(choose), placed(choose));
-            let moved = |(one, other): &(State, State)| {
-                (State { placed: here, ..*one }, State { placed: there, ..*other })
+            let moved = |(one, other): &(State<Places>, State<Places>)| {
+                let (one, other) = (one.clone(), other.clone());
+                (State { placed: here.clone(), ..one }, State { placed: there.clone(), ..other })
             };
             relation.0.extend(relation.0.iter().map(moved).collect::<Vec<_>>());
         }
         is_added => {
             let place = usize::from(choose.below(relation.0.len() as u8));
-            let (mut here, mut there) = relation.0[place];
+            let (mut here, mut there) = relation.0[place].clone();
             match choose.below(4) {
                 0 => here = State { pose: dart(choose), placed: placed(choose) },
                 1 => there = State { pose: dart(choose), placed: placed(choose) },
@@ -182,7 +188,7 @@ fn altered<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> 
 // paper: marker.undirected-insufficient
 fn spared<C: Choose>(choose: &mut C) -> CaseResult {
     let [one, other] = figure_1::worlds(choose)?;
-    let comparison = Comparison::new(&Undirected, (&one, Dart(0)), (&other, Dart(0)));
+    let comparison = Comparison::new(AidKind::from(Undirected), (&one, Dart(0)), (&other, Dart(0)));
     let Some(mut relation) = comparison.relation([Dart(0), Dart(0)]) else {
         return claim("no walk distinguishes the worlds", false);
     };

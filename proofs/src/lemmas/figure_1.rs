@@ -63,7 +63,7 @@ pub(super) fn worlds(choose: &mut impl Choose) -> Result<[EmbeddedGraph; 2], Sto
 /// Shows the same door taken in both worlds.
 fn show_walks(choose: &mut impl Choose, poses: [Dart; 2], door: Door) {
     for (world, pose) in [(0, poses[0]), (1, poses[1])] {
-        choose.show(|| Exhibit::Walk { world, marker: &Undirected, pose, doors: vec![door] });
+        choose.show(|| Exhibit::Walk { world, marker: Undirected, pose, doors: vec![door] });
     }
 }
 

@@ -89,7 +89,7 @@ fn undirected<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) 
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
     for pose in [one, other] {
-        choose.show(|| Exhibit::Walk { world: 0, marker: &Undirected, pose, doors: Vec::new() });
+        choose.show(|| Exhibit::Walk { world: 0, marker: Undirected, pose, doors: Vec::new() });
     }
     let seen = |pose| Undirected.sighting(&graph, Dart(0), pose);
     given(choose, one != other && seen(one) == seen(other) && seen(one) != Sighting::Nothing)?;

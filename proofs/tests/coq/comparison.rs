@@ -75,7 +75,7 @@ fn run_line<E: Explorer>(
     number: impl Fn(&E, &E::Choice) -> Dart,
 ) -> String {
     let (mut did, mut chose) = (Actions(Vec::new()), Vec::new());
-    let mut world = GraphWorld::with_marker(start, run.marker(), Dart(0));
+    let mut world = GraphWorld::with_aid(start, run.aid(), Dart(0));
     let ended = explore_with(&mut run, &mut Observed::new(&mut world, &mut did), |run| {
         let Some(choose) = &mut options else { return run.choose() };
         let mut open = run.choices()?;

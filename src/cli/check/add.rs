@@ -57,7 +57,7 @@ impl CheckArguments {
         };
         let title = line.algorithm.as_deref().unwrap_or_default();
         let is_this = |known: &&MappingAlgorithm| {
-            known.info().title == title && known.marker().name() == line.marker
+            known.info().title == title && known.aid().name() == line.marker
         };
         let algorithm = MappingAlgorithm::ALL.iter().find(is_this).ok_or_else(|| {
             let cause = format!("no algorithm is `{title}` with marker `{}`", line.marker);

@@ -171,7 +171,7 @@ impl EstimateOptions {
         let line = EstimateLine {
             edges,
             class: sweep.class().name(),
-            marker: algorithm.marker().name(),
+            marker: algorithm.aid().name(),
             algorithm: algorithm.info().title,
             probes,
             seed,

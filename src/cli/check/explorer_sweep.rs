@@ -15,11 +15,11 @@ use std::{
 };
 
 use toposlam_model::{
+    aid::AidKind,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     folding::certificate_length,
     isomorphism::{Candidate, canonical},
-    marker::Marker,
 };
 
 use super::{Work, explorer_tally::ExplorerTally};
@@ -38,7 +38,7 @@ const BATCH: usize = 256;
 pub(super) struct ExplorerSweep<'a> {
     pub(super) command: &'a ExplorerCommand,
     pub(super) limits: ExplorerLimits,
-    pub(super) marker: &'static dyn Marker,
+    pub(super) marker: AidKind,
     /// The number of starts that are not mapped and kept.
     pub(super) most_kept: usize,
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use toposlam_model::{
+    aid::AidKind,
     check::{KeptStart, Tally, WorstStart},
     format::named_world::NamedWorld,
-    marker::Marker,
 };
 
 use super::line::{FailedRun, FailureLine, SizeLine};
@@ -85,7 +85,7 @@ impl ExplorerTally {
     }
 
     /// The line of the counts, in which a guess has the other world.
-    pub(super) fn line(&self, line: SizeLine, explorer: &str, marker: &dyn Marker) -> SizeLine {
+    pub(super) fn line(&self, line: SizeLine, explorer: &str, marker: AidKind) -> SizeLine {
         let failure = self.counts.failure.clone();
         let line = SizeLine {
             explorer: Some(explorer.to_owned()),

@@ -6,11 +6,11 @@ use std::{collections::BTreeMap, fmt::Write as _, ops::Not};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use toposlam_model::{
+    aid::AidKind,
     check::{EnumeratedStart, FailedStart, Tally, WorstStart},
     embedded_graph::{Dart, EmbeddedGraph},
     format::{named_world::NamedWorld, world_file},
     mapping::MappingAlgorithm,
-    marker::Marker,
 };
 
 use crate::cli::{
@@ -136,7 +136,7 @@ impl FailureLine {
     }
 
     /// The same failure; with the other world of a guess.
-    pub(super) fn explained(mut self, marker: &dyn Marker) -> Self {
+    pub(super) fn explained(mut self, marker: AidKind) -> Self {
         if self.cause == ExplorerFault::GUESSED
             && let Some(world) = self.named_world()
             && let (FailedRun::Explorer(run), Some(facing)) = (&mut self.run, world.start)

@@ -193,7 +193,7 @@ impl<'o> CheckReport<'o> {
                 print_paragraph(self.out, &text)?;
                 writeln!(self.out)?;
                 if let (Some(world), Ok(marker)) = (failure.named_world(), named(&line.marker)) {
-                    run.print(&world, marker, self.out)?;
+                    run.print(&world, marker.into(), self.out)?;
                 }
                 writeln!(self.out)?;
                 print_paragraph(self.out, "The start, as a world file:")?;

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
-use toposlam_model::{ambiguity::PlacedRobot, percept::Percept, world::Action};
+use toposlam_model::{aid::Action, ambiguity::PlacedRobot, percept::Percept};
 
 use super::{CliError, robot_comparison::RobotComparison};
 use crate::cli::text::{print_hanging, print_rows};

@@ -7,12 +7,13 @@ use std::{
 
 use serde_json::{Value, json};
 use toposlam_model::{
-    ambiguity::{Bisimulation, Comparison, PlacedRobot, Relation, StateClasses, Walk, state_count},
+    aid::{Aid, AidKind, Places, State},
+    ambiguity::{
+        Bisimulation, Comparison, PlacedRobot, Relation, StateClasses, Walk, has_more_states,
+    },
     embedded_graph::Dart,
     enumerate::{Interrupted, Watch},
     format::named_world::NamedWorld,
-    marker::Marker,
-    world::State,
 };
 
 use super::{CliError, walk_page};
@@ -29,7 +30,7 @@ const PRINTED_CLASSES: usize = 40;
 /// Robots in two worlds: one start in A, one or more in B.
 pub(super) struct RobotComparison<'w> {
     worlds: [&'w NamedWorld; 2],
-    marker: &'static dyn Marker,
+    marker: AidKind,
     comparison: Comparison<'w>,
     start: Dart,
     /// Each start in B, with the walk that distinguishes it from the start in A, if there is one.
@@ -38,8 +39,8 @@ pub(super) struct RobotComparison<'w> {
     bisimulation: Option<Bisimulation>,
 }
 
-/// The most states of the robot and the marker in a world. Each state takes more than 100 bytes.
-const MOST_STATES: usize = 1 << 26;
+/// The most states of the robot and the marker in a world. Each state takes some 200 bytes.
+const MOST_STATES: usize = 1 << 24;
 
 impl<'w> RobotComparison<'w> {
     /// Robots at the starts of the worlds. With `one_pose` the robot in B has one start, otherwise each
@@ -49,20 +50,18 @@ impl<'w> RobotComparison<'w> {
     /// Returns an error if a world has too many states, or if the watch stops.
     pub(super) fn new(
         worlds: [&'w NamedWorld; 2],
-        marker: &'static dyn Marker,
+        marker: AidKind,
         one_pose: bool,
         watch: &dyn Watch,
     ) -> Result<Self, CliError> {
         let [a, b] = worlds;
-        if let Some(world) =
-            worlds.into_iter().find(|world| state_count(&world.graph, marker) > MOST_STATES)
-        {
-            let cause = format!(
-                "with the {} marker it has {} states; at most {} can be compared",
-                marker.name(),
-                grouped(state_count(&world.graph, marker) as u128),
-                grouped(MOST_STATES as u128),
-            );
+        let is_too_large = |world: &&NamedWorld| {
+            let start = world.start.unwrap_or(Dart(0));
+            has_more_states(&world.graph, marker, start, MOST_STATES)
+        };
+        if let Some(world) = worlds.into_iter().find(is_too_large) {
+            let most = grouped(MOST_STATES as u128);
+            let cause = format!("with {} it has more than {most} states", marker.name());
             return Err(CliError::at(&world.name, cause));
         }
         let (start, other) = (a.start.unwrap_or(Dart(0)), b.start.unwrap_or(Dart(0)));
@@ -143,16 +142,16 @@ impl<'w> RobotComparison<'w> {
     }
 
     /// A pair of states in words.
-    fn pair_text(&self, &(one, other): &(State, State)) -> [String; 2] {
+    fn pair_text(&self, (one, other): &(State<Places>, State<Places>)) -> [String; 2] {
         let [a, b] = self.worlds;
         [a.state_text(&self.marker, one), b.state_text(&self.marker, other)]
     }
 
     /// The states of each class in words: those in A, and those in B.
     fn classes_text(&self, classes: &StateClasses) -> Vec<[Vec<String>; 2]> {
-        let text = |side: usize, states: &[State]| {
+        let text = |side: usize, states: &[State<Places>]| {
             let world = self.worlds[side];
-            states.iter().map(|&state| world.state_text(&self.marker, state)).collect()
+            states.iter().map(|state| world.state_text(&self.marker, state)).collect()
         };
         let classes = classes.classes();
         classes.iter().map(|[one, other]| [text(0, one), text(1, other)]).collect()
@@ -188,7 +187,7 @@ impl<'w> RobotComparison<'w> {
         let [a, b] = self.worlds;
         let start = a.start_text(self.start);
         writeln!(out)?;
-        print_paragraph(out, &format!("{} marker: {}", self.marker.name(), self.marker.about()))?;
+        print_paragraph(out, &format!("{}: {}", self.marker.name(), self.marker.about()))?;
         match &self.bisimulation {
             Some(Bisimulation::Relation(relation)) => return self.print_relation(relation, out),
             Some(Bisimulation::Classes(classes)) => return self.print_classes(classes, out),
@@ -250,7 +249,7 @@ impl<'w> RobotComparison<'w> {
             let [one, other] = states.each_ref().map(|states| counted(states.len(), "state"));
             let [here, there] = [0, 1].map(|side| {
                 let first = states[side].first();
-                first.map_or_else(String::new, |&state| {
+                first.map_or_else(String::new, |state| {
                     format!(" ({}, ...)", self.worlds[side].state_text(&self.marker, state))
                 })
             });

@@ -17,11 +17,7 @@ use toposlam_logs::{
     topic_map::TopicMap,
     writer::{LogWriteError, LogWriter},
 };
-use toposlam_model::{
-    driving::odometry::Odometry,
-    enumerate::Class,
-    marker::{Marker, NoMarker},
-};
+use toposlam_model::{driving::odometry::Odometry, enumerate::Class, marker::NoMarker};
 use toposlam_robot::measured_hallway::direction;
 
 use super::{CliError, ConformArguments, JudgedLog};

@@ -4,10 +4,10 @@
 use std::path::Path;
 
 use toposlam_model::{
+    aid::{AidKind, FEW_STATES},
     ambiguity::{AmbiguitySearch, KeptPairs},
     enumerate::Class,
     format::named_world::NamedWorld,
-    marker::{MARKERS, Marker},
 };
 use toposlam_proofs::marker_theorems;
 
@@ -35,7 +35,7 @@ fn full_size(class: Class) -> usize {
 }
 
 /// A marker, and its smallest pair in each class.
-type Row = (&'static dyn Marker, Vec<WorldPairs>);
+type Row = (AidKind, Vec<WorldPairs>);
 
 /// Writes the atlas. `edges` limits the sizes of the worlds.
 pub(super) fn write(
@@ -46,7 +46,7 @@ pub(super) fn write(
     let sizes = Class::ALL.map(|class| full_size(class).min(edges.unwrap_or(usize::MAX)));
     let mut rows = Vec::new();
     output::make_folder(folder)?;
-    for marker in MARKERS {
+    for &marker in FEW_STATES {
         let mut found = Vec::new();
         for (class, edges) in Class::ALL.into_iter().zip(sizes) {
             let search = AmbiguitySearch::new(class, edges, marker)
@@ -136,7 +136,7 @@ commands.",
 }
 
 /// That there is no pair in any class, and why.
-fn no_pair(marker: &dyn Marker) -> String {
+fn no_pair(marker: AidKind) -> String {
     let theorem = |class| proved(marker, class, true);
     let mut theorems: Vec<_> = Class::ALL.into_iter().map(theorem).collect();
     theorems.dedup();
@@ -148,13 +148,13 @@ fn no_pair(marker: &dyn Marker) -> String {
 }
 
 /// The theorem that the marker suffices in this class of worlds, or that it does not.
-pub(super) fn proved(marker: &dyn Marker, class: Class, suffices: bool) -> Option<&'static str> {
+pub(super) fn proved(marker: AidKind, class: Class, suffices: bool) -> Option<&'static str> {
     let theorem = marker_theorems::about(marker.name(), class)?;
     (theorem.suffices == suffices).then_some(theorem.theorem)
 }
 
 /// That the search up to this number of edges found no pair; or, if it is proved, that there is none.
-pub(super) fn none(marker: &dyn Marker, class: Class, edges: usize) -> String {
+pub(super) fn none(marker: AidKind, class: Class, edges: usize) -> String {
     match proved(marker, class, true) {
         Some(theorem) => format!("none: `{theorem}`"),
         None => format!("none up to {}", counted(edges, "edge")),
@@ -162,7 +162,7 @@ pub(super) fn none(marker: &dyn Marker, class: Class, edges: usize) -> String {
 }
 
 /// The sizes of the smallest pair, with links to its files, and the theorem about the marker in this class.
-fn cell(marker: &dyn Marker, class: Class, found: &WorldPairs, edges: usize) -> String {
+fn cell(marker: AidKind, class: Class, found: &WorldPairs, edges: usize) -> String {
     let pairs = found.pairs();
     let Some(pair) = pairs.first() else {
         return none(marker, class, edges);

@@ -12,8 +12,7 @@ use std::{
 
 use ext_sort::BinaryHeapMerger;
 use toposlam_model::ambiguity::{
-    AmbiguityCandidate, AmbiguitySearch, CandidateSorter, CandidatesInMemory, SortedCandidates,
-    SorterError,
+    AmbiguityCandidate, CandidateSorter, CandidatesInMemory, SortedCandidates, SorterError,
 };
 
 use crate::cli::CliError;
@@ -50,14 +49,9 @@ impl FromStr for MemoryLimit {
 }
 
 /// The sorter for the candidates of a search.
-pub(super) fn sorter(
-    limit: Option<MemoryLimit>,
-    search: &AmbiguitySearch,
-) -> Result<Box<dyn CandidateSorter>, CliError> {
+pub(super) fn sorter(limit: Option<MemoryLimit>) -> Result<Box<dyn CandidateSorter>, CliError> {
     let Some(limit) = limit else { return Ok(Box::new(CandidatesInMemory::default())) };
-    let for_each = (search.candidate_bytes() + FOR_EACH) as u64;
-    let at_once = (limit.0 - BESIDES) / for_each;
-    let at_once = usize::try_from(at_once).unwrap_or(usize::MAX);
+    let at_once = usize::try_from(limit.0 - BESIDES).unwrap_or(usize::MAX);
     let on_disk = CandidatesOnDisk::new(at_once, env::temp_dir());
     Ok(Box::new(on_disk.map_err(|cause| CliError::at("--memory", cause))?))
 }
@@ -104,7 +98,7 @@ impl Iterator for CandidateFile {
 
 /// Sorts candidates in memory until there are too many, and then in files that are merged at the end.
 struct CandidatesOnDisk {
-    /// The most candidates in memory.
+    /// The most bytes of candidates in memory.
     at_once: usize,
     added: Mutex<Added>,
     /// The folder of the files.
@@ -114,6 +108,8 @@ struct CandidatesOnDisk {
 #[derive(Default)]
 struct Added {
     in_memory: Vec<AmbiguityCandidate>,
+    /// What these take, in bytes.
+    bytes: usize,
     /// They have no names: the system removes them when the program ends in any way.
     files: Vec<CandidateFile>,
 }
@@ -135,6 +131,7 @@ fn failure(folder: &Path, error: &io::Error) -> String {
 /// begin while this one waits, and wait for the same lock.
 fn spill(added: &mut Added, folder: &Path) -> Result<(), SorterError> {
     let mut candidates = mem::take(&mut added.in_memory);
+    added.bytes = 0;
     candidates.sort_unstable();
     let file = CandidateFile::write(&candidates, folder);
     added.files.push(file.map_err(|error| failure(folder, &error))?);
@@ -145,9 +142,11 @@ impl CandidateSorter for CandidatesOnDisk {
     fn add(&self, candidates: Vec<AmbiguityCandidate>) -> Result<(), SorterError> {
         let mut added = self.added.lock().unwrap_or_else(PoisonError::into_inner);
         for candidate in candidates {
-            if added.in_memory.len() >= self.at_once {
+            let bytes = candidate.as_bytes().len() + FOR_EACH;
+            if added.bytes + bytes > self.at_once && added.bytes > 0 {
                 spill(&mut added, &self.folder)?;
             }
+            added.bytes += bytes;
             added.in_memory.push(candidate);
         }
         Ok(())
@@ -173,7 +172,11 @@ impl CandidateSorter for CandidatesOnDisk {
 mod tests {
     use std::iter;
 
-    use toposlam_model::{ambiguity::KeptPairs, enumerate::Class, marker::named};
+    use toposlam_model::{
+        aid::named,
+        ambiguity::{AmbiguitySearch, KeptPairs},
+        enumerate::Class,
+    };
 
     use super::*;
 
@@ -208,12 +211,13 @@ mod tests {
         let sorted = candidates();
         let reversed: Vec<_> = sorted.iter().rev().cloned().collect();
         assert!(sorted.len() > 1000);
-        for at_once in [usize::MAX, 200, 50] {
+        let bytes: usize = sorted.iter().map(|one| one.as_bytes().len() + FOR_EACH).sum();
+        for parts in [1, 5, 20] {
             let folder = tempfile::tempdir().unwrap();
-            let on_disk = CandidatesOnDisk::new(at_once, folder.path().to_owned()).unwrap();
+            let on_disk = CandidatesOnDisk::new(bytes / parts, folder.path().to_owned()).unwrap();
             on_disk.add(reversed.clone()).unwrap();
             let files = on_disk.added.lock().unwrap().files.len();
-            assert_eq!(files, (sorted.len() - 1) / at_once);
+            assert!((parts - 1..=parts).contains(&files), "{files} files");
             let returned: Result<Vec<_>, _> = Box::new(on_disk).sorted().unwrap().collect();
             assert_eq!(returned.unwrap(), sorted);
             // The files never have names.

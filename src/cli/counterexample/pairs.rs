@@ -3,10 +3,10 @@
 use std::{collections::BTreeMap, path::Path, ptr};
 
 use toposlam_model::{
+    aid::AidKind,
     ambiguity::{Comparison, Findings, PlacedWorld, Unfinished},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
-    marker::Marker,
 };
 
 use crate::{
@@ -26,12 +26,7 @@ pub(super) struct WorldPairs {
 
 impl WorldPairs {
     /// The smallest pair, or all.
-    pub(super) fn new(
-        marker: &'static dyn Marker,
-        class: Class,
-        findings: &Findings,
-        all: bool,
-    ) -> Self {
+    pub(super) fn new(marker: AidKind, class: Class, findings: &Findings, all: bool) -> Self {
         let pairs = if all { findings.pairs() } else { findings.smallest().into_iter().collect() };
         let mut worlds: Vec<&PlacedWorld> = Vec::new();
         let mut places = BTreeMap::new();
@@ -66,7 +61,7 @@ impl WorldPairs {
     }
 
     /// Writes the page of the smallest pair. Without a pair it prints a message and writes nothing.
-    pub(super) fn write_page(&self, path: &Path, marker: &dyn Marker) -> Result<(), CliError> {
+    pub(super) fn write_page(&self, path: &Path, marker: AidKind) -> Result<(), CliError> {
         let Some(worlds @ [one, other]) = self.pairs().first().copied() else {
             remark!("{} is not written: there is no pair", path.display());
             return Ok(());

@@ -4,10 +4,10 @@ use std::io::{self, Write};
 
 use serde_json::json;
 use toposlam_model::{
+    aid::AidKind,
     ambiguity::{Findings, SizeFindings},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
-    marker::Marker,
 };
 
 use super::{
@@ -28,8 +28,10 @@ pub(super) struct SearchReport<'o> {
     json: bool,
     class: Class,
     edges: usize,
-    /// The number of markers. If there is one, the report on it is longer.
-    markers: usize,
+    /// The number of marking aids. If there is one, the report on it is longer.
+    aids: usize,
+    /// The length of the longest of their names.
+    width: usize,
     /// Whether a page shows the pair.
     has_page: bool,
     has_head: bool,
@@ -43,22 +45,25 @@ impl<'o> SearchReport<'o> {
         json: bool,
         class: Class,
         edges: usize,
-        markers: usize,
+        aids: impl Iterator<Item = AidKind>,
         has_page: bool,
     ) -> Self {
-        Self { out, json, class, edges, markers, has_page, has_head: false, pairs: Vec::new() }
+        let lengths: Vec<usize> = aids.map(|aid| aid.name().len()).collect();
+        let width = lengths.iter().copied().max().unwrap_or_default();
+        let (aids, pairs) = (lengths.len(), Vec::new());
+        Self { out, json, class, edges, aids, width, has_page, has_head: false, pairs }
     }
 
     /// Prints the result for one marker.
     pub(super) fn marker(
         &mut self,
-        marker: &dyn Marker,
+        marker: AidKind,
         findings: &Findings,
         found: WorldPairs,
     ) -> Result<(), CliError> {
         if self.json {
             self.objects(marker.name(), findings, &found)?;
-        } else if self.markers == 1 {
+        } else if self.aids == 1 {
             self.full_report(marker, findings, &found)?;
         } else {
             self.row(marker, findings, &found)?;
@@ -73,7 +78,7 @@ impl<'o> SearchReport<'o> {
     pub(super) fn threads(
         &mut self,
         cluster: &mut Box<dyn ClusterSession>,
-        marker: &dyn Marker,
+        marker: AidKind,
     ) -> Result<(), CliError> {
         cluster.report(self.out, self.json, marker.name())
     }
@@ -116,18 +121,14 @@ impl<'o> SearchReport<'o> {
     }
 
     /// A row of a table of markers.
-    fn row(
-        &mut self,
-        marker: &dyn Marker,
-        findings: &Findings,
-        found: &WorldPairs,
-    ) -> io::Result<()> {
+    fn row(&mut self, marker: AidKind, findings: &Findings, found: &WorldPairs) -> io::Result<()> {
+        let width = self.width;
         if !std::mem::replace(&mut self.has_head, true) {
             let (class, edges) = (self.class, up_to(self.edges));
             let head = "Pairs of worlds that no walk distinguishes";
             print_paragraph(self.out, &format!("{head}: class {class}, {edges}"))?;
             let (marker, placed, ambiguous) = ("marker", "placed worlds", "ambiguous");
-            writeln!(self.out, "\n{marker:<15}  {placed:>13}  {ambiguous:>9}  smallest pair")?;
+            writeln!(self.out, "\n{marker:<width$}  {placed:>13}  {ambiguous:>9}  smallest pair")?;
         }
         let sum = |count: fn(&SizeFindings) -> u64| {
             grouped(findings.sizes.iter().map(|size| u128::from(count(size))).sum())
@@ -138,17 +139,17 @@ impl<'o> SearchReport<'o> {
             Some(&pair) => sizes(pair),
             None => none(marker, self.class, self.edges),
         };
-        writeln!(self.out, "{name:<15}  {placed:>13}  {ambiguous:>9}  {smallest}")
+        writeln!(self.out, "{name:<width$}  {placed:>13}  {ambiguous:>9}  {smallest}")
     }
 
     /// The longer report on one marker.
     fn full_report(
         &mut self,
-        marker: &dyn Marker,
+        marker: AidKind,
         findings: &Findings,
         found: &WorldPairs,
     ) -> io::Result<()> {
-        print_paragraph(self.out, &format!("{} marker: {}", marker.name(), marker.about()))?;
+        print_paragraph(self.out, &format!("{}: {}", marker.name(), marker.about()))?;
         writeln!(self.out, "class {}, {}\n", self.class, up_to(self.edges))?;
         writeln!(self.out, "{:>5}  {:>13}  {:>9}", "edges", "placed worlds", "ambiguous")?;
         for &SizeFindings { edges, placed_worlds, ambiguous } in &findings.sizes {

@@ -7,10 +7,11 @@ use std::{
 
 use clap::Arg;
 use toposlam_model::{
+    aid::AidKind,
     driving::pose::Pose,
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind},
-    marker::{Directional, Marker, NoMarker},
+    marker::{Directional, NoMarker},
 };
 use toposlam_simulator::{
     Building, EffectScope, KNOBS, Rig, label_mask, labels, render, start_pose,
@@ -71,10 +72,10 @@ impl ViewOptions {
         &self,
         path: &Path,
         at: ViewPose,
-        marker: Option<&dyn Marker>,
+        marker: Option<AidKind>,
         out: &Path,
     ) -> Result<(), CliError> {
-        let is_marked = match marker.map(Marker::name) {
+        let is_marked = match marker.map(AidKind::name) {
             None => false,
             Some(name) if name == NoMarker.name() => false,
             Some(name) if name == Directional.name() => true,

@@ -5,6 +5,8 @@ use std::io::Write;
 use serde::Serialize;
 use serde_json::Value;
 use toposlam_model::{
+    aid::Action,
+    aid::AidKind,
     check::{ChoicesLimit, EveryWay},
     embedded_graph::{Dart, EmbeddedGraph},
     folding::certificate_length,
@@ -13,8 +15,7 @@ use toposlam_model::{
     mapping::{
         FACING, Flaw, MapWalk, MappedWorld, MappingAlgorithm, MappingError, MappingMethod, Observer,
     },
-    marker::Marker,
-    world::{Action, GraphWorld},
+    world::GraphWorld,
 };
 
 use crate::cli::{
@@ -91,10 +92,10 @@ impl<'a> ExploredWorld<'a> {
         method: MappingMethod,
         bound: usize,
         (world, facing): (&'a NamedWorld, Dart),
-        observer: &mut impl Observer<GraphWorld<'a, &'static dyn Marker>>,
+        observer: &mut impl Observer<GraphWorld<'a, AidKind>>,
     ) -> Self {
         let (graph, algorithm) = (&world.graph, method.algorithm());
-        let mut robot = GraphWorld::with_marker(graph, algorithm.marker(), facing);
+        let mut robot = GraphWorld::with_aid(graph, algorithm.aid(), facing);
         let (journey, mapped) = method.map_world(&mut robot, bound, &[], observer);
         let (mapped, result) = match mapped {
             Ok(mapped) => {
@@ -105,7 +106,7 @@ impl<'a> ExploredWorld<'a> {
             }
             Err(error) => (None, Err(error.into())),
         };
-        let carries = robot.carries();
+        let carries = robot.held() > 0;
         Self {
             world,
             facing,
@@ -159,7 +160,7 @@ impl<'a> ExploredWorld<'a> {
         let map = self.journey.map();
         let ways = self.ways.as_ref();
         let error = self.result.as_ref().err();
-        let marker = self.algorithm.marker();
+        let marker = self.algorithm.aid();
         let is_named = is_directional(marker) && self.algorithm != MappingAlgorithm::default();
         let line = RunLine {
             doors,
@@ -230,7 +231,7 @@ impl<'a> ExploredWorld<'a> {
     ) -> Result<(), CliError> {
         let Self { world, journey, algorithm, .. } = self;
         let (vertex_count, edges) = (world.graph.vertex_count(), world.graph.edge_count());
-        let least = if is_directional(algorithm.marker()) {
+        let least = if is_directional(algorithm.aid()) {
             certificate_length(&world.graph, self.facing)
         } else {
             edges

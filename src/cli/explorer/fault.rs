@@ -1,7 +1,7 @@
 //! What can be wrong with a run of an explorer that is another program.
 
 use thiserror::Error;
-use toposlam_model::world::RefusedAction;
+use toposlam_model::aid::RefusedAction;
 
 use crate::cli::text::counted;
 
@@ -63,7 +63,11 @@ fn refusal(refused: &RefusedAction) -> String {
         }
         RefusedAction::NothingToPickUp => "picked up a marker where there is none".to_owned(),
         RefusedAction::NothingToDrop => "dropped a marker that the robot does not carry".to_owned(),
-        RefusedAction::NoWorldLeft => refused.to_string(),
+        RefusedAction::StringTooShort => "went farther than its string is long".to_owned(),
+        RefusedAction::NotOfThisAid { action } => {
+            format!("asked for {action}, which a robot with this marking aid cannot do")
+        }
+        RefusedAction::NoWorldLeft | RefusedAction::TooManyDoors { .. } => refused.to_string(),
         RefusedAction::OutOfMoves { bound } => {
             format!("made more than {}", counted(*bound as usize, "move"))
         }
@@ -88,6 +92,9 @@ impl ExplorerFault {
             Self::RefusedAction { refused } => match refused {
                 RefusedAction::NoSuchDoor { .. } | RefusedAction::NoWorldLeft => "no-such-door",
                 RefusedAction::NothingToPickUp | RefusedAction::NothingToDrop => "no-such-marker",
+                RefusedAction::StringTooShort
+                | RefusedAction::TooManyDoors { .. }
+                | RefusedAction::NotOfThisAid { .. } => "not-possible",
                 RefusedAction::OutOfMoves { .. } => MAX_MOVES,
             },
             Self::GaveUp { .. } => "gave-up",

@@ -1,12 +1,12 @@
 //! The lines between the check and an explorer that is another program: docs/protocol.md.
 
 use serde::de::DeserializeOwned;
-use serde_json::Value;
+use serde_json::{Value, json};
 use toposlam_model::{
+    aid::Action,
     embedded_graph::Dart,
     mapping::{ExploredMap, Flaw},
-    percept::{Door, Percept, Sighting},
-    world::Action,
+    percept::{Door, OtherRobot, Percept, Sighting, StringView, TeamView},
 };
 
 use super::fault::ExplorerFault;
@@ -20,14 +20,35 @@ pub(super) fn percept_line(percept: Percept) -> String {
         Sighting::Nothing => "null".to_owned(),
         Sighting::Pointing(door) => door.0.to_string(),
         Sighting::Lying(count) => count.to_string(),
-        Sighting::First => "\"first\"".to_owned(),
-        Sighting::Second => "\"second\"".to_owned(),
-        Sighting::Both => "\"both\"".to_owned(),
+        Sighting::These(markers) => json!(markers.names().join("+")).to_string(),
         Sighting::Passed => "\"passed\"".to_owned(),
         Sighting::PassedAlong => "\"along\"".to_owned(),
         Sighting::PassedAgainst => "\"against\"".to_owned(),
+        Sighting::String(StringView { doors, fixed_end, free_end, hand }) => {
+            let doors: Vec<_> = doors.doors().map(|door| door.0).collect();
+            let hand = hand.map(|door| door.0);
+            json!({ "doors": doors, "fixed_end": fixed_end, "free_end": free_end, "hand": hand })
+                .to_string()
+        }
+        Sighting::Team(TeamView(others)) => {
+            let robots: Vec<_> = others.into_iter().filter_map(other_robot).collect();
+            json!({ "robots": robots }).to_string()
+        }
     };
     format!("{{\"percept\":{{\"degree\":{degree},\"marker\":{marker}}}}}\n")
+}
+
+/// Another robot of a team; `None` if there is none.
+fn other_robot(robot: OtherRobot) -> Option<Value> {
+    let at = |place: &str, along: Option<Door>| {
+        Some(json!({ "place": place, "along": along.map(|door| door.0) }))
+    };
+    match robot {
+        OtherRobot::Absent => None,
+        OtherRobot::Elsewhere { degree } => Some(json!({ "place": "elsewhere", "degree": degree })),
+        OtherRobot::Here { along } => at("here", along),
+        OtherRobot::WithSecond { along } => at("with-second", along),
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -61,9 +82,11 @@ impl ExplorerAnswer {
             ["door"] => part(&fields["door"], "the number of a door")
                 .map(|door| Self::Act(Action::Take(Door(door)))),
             ["action"] => match fields["action"].as_str() {
-                Some("pick-up") => Ok(Self::Act(Action::PickUp)),
-                Some("drop") => Ok(Self::Act(Action::Drop)),
-                _ => Err(format!("{} is not \"pick-up\" or \"drop\"", fields["action"])),
+                Some(action) => action
+                    .parse()
+                    .map(|action| Self::Act(Action::Do(action)))
+                    .map_err(|_| format!("{} is not \"pick-up\" or \"drop\"", fields["action"])),
+                None => Err(format!("{} is not \"pick-up\" or \"drop\"", fields["action"])),
             },
             ["give_up"] => part(&fields["give_up"], "a text")
                 .map(|reason: String| Self::GiveUp(shortened(&reason))),
@@ -186,6 +209,8 @@ fn dart_text((vertex, index): ReportedDart) -> String {
 
 #[cfg(test)]
 mod tests {
+    use toposlam_model::{aid::AidAction, percept::MarkerSet};
+
     use super::*;
 
     fn answer(line: &str) -> Result<ExplorerAnswer, ExplorerFault> {
@@ -205,13 +230,19 @@ mod tests {
         let pointing = Sighting::Pointing(Door(1));
         assert_eq!(line(3, pointing), "{\"percept\":{\"degree\":3,\"marker\":1}}\n");
         assert_eq!(line(1, Sighting::Nothing), "{\"percept\":{\"degree\":1,\"marker\":null}}\n");
-        assert_eq!(line(2, Sighting::Both), "{\"percept\":{\"degree\":2,\"marker\":\"both\"}}\n");
+        assert_eq!(
+            line(2, MarkerSet::from_numbers([0, 1]).map(Sighting::These).unwrap()),
+            "{\"percept\":{\"degree\":2,\"marker\":\"first+second\"}}\n"
+        );
     }
 
     #[test]
     fn an_action_is_a_door_or_a_word() {
         assert_eq!(answer("{\"door\":2}\r"), Ok(ExplorerAnswer::Act(Action::Take(Door(2)))));
-        assert_eq!(answer(" {\"action\": \"drop\"}"), Ok(ExplorerAnswer::Act(Action::Drop)));
+        assert_eq!(
+            answer(" {\"action\": \"drop\"}"),
+            Ok(ExplorerAnswer::Act(Action::Do(AidAction::Drop)))
+        );
         assert_eq!(answer("{\"give_up\":\"lost\"}"), Ok(ExplorerAnswer::GiveUp("lost".to_owned())));
     }
 

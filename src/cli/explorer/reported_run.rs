@@ -5,12 +5,12 @@ use std::{io::Write, path::Path};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use toposlam_model::{
+    aid::Action,
+    aid::AidKind,
     check::other_world,
     embedded_graph::{Dart, EmbeddedGraph},
     folding::SmallestWorld,
     format::{named_world::NamedWorld, world_file},
-    marker::Marker,
-    world::Action,
 };
 
 use super::run::{EndedRun, doors_of};
@@ -69,7 +69,7 @@ impl ReportedRun {
     pub(in crate::cli) fn find_other_world(
         &mut self,
         start: (&EmbeddedGraph, Dart),
-        marker: &dyn Marker,
+        marker: AidKind,
     ) {
         let found = other_world(start, marker, &doors_of(&self.actions), &StopSignal);
         if let Some(SmallestWorld::World { graph, limit, .. }) = found {
@@ -98,7 +98,7 @@ impl ReportedRun {
     pub(in crate::cli) fn print(
         &self,
         world: &NamedWorld,
-        marker: &dyn Marker,
+        marker: AidKind,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
         let beside = self.beside();
@@ -118,7 +118,7 @@ impl ReportedRun {
         &self,
         path: &Path,
         world: &NamedWorld,
-        marker: &dyn Marker,
+        marker: AidKind,
     ) -> Result<(), CliError> {
         let beside = self.beside();
         let run = self.shown(world, marker, beside.as_ref());
@@ -137,7 +137,7 @@ impl ReportedRun {
     fn shown<'a>(
         &'a self,
         world: &'a NamedWorld,
-        marker: &'a dyn Marker,
+        marker: AidKind,
         beside: Option<&'a (Beside, NamedWorld)>,
     ) -> ExplorerRun<'a> {
         let beside = beside.map(|(kind, world)| (*kind, world));

@@ -1,14 +1,15 @@
 //! One run of an explorer that is another program, from one start, and its judgement.
 
 use toposlam_model::{
+    aid::Action,
+    aid::AidKind,
     ambiguity::Comparison,
     check::{determines_world, judge_map},
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::Candidate,
     mapping::{ExploredMap, Flaw},
-    marker::Marker,
     percept::Door,
-    world::{Action, GraphWorld},
+    world::GraphWorld,
 };
 
 use super::{
@@ -23,7 +24,7 @@ use super::{
 pub(in crate::cli) struct ExplorerStart<'g> {
     pub(in crate::cli) graph: &'g EmbeddedGraph,
     pub(in crate::cli) facing: Dart,
-    pub(in crate::cli) marker: &'static dyn Marker,
+    pub(in crate::cli) marker: AidKind,
     pub(in crate::cli) certificate: Option<u64>,
 }
 
@@ -44,7 +45,7 @@ impl ExplorerStart<'_> {
         limits: ExplorerLimits,
         candidate: &mut Candidate,
     ) -> Option<EndedRun> {
-        let mut world = GraphWorld::with_marker(self.graph, self.marker, self.facing);
+        let mut world = GraphWorld::with_aid(self.graph, self.marker, self.facing);
         let mut actions = Vec::new();
         let mut map = None;
         let result = loop {
@@ -76,7 +77,7 @@ impl ExplorerStart<'_> {
     fn judge(
         &self,
         (reported, map): (&ReportedMap, &ExploredMap),
-        world: &GraphWorld<&dyn Marker>,
+        world: &GraphWorld<AidKind>,
         actions: &[Action],
         candidate: &mut Candidate,
     ) -> Result<(), ExplorerFault> {
@@ -126,7 +127,7 @@ impl ExplorerStart<'_> {
 pub(in crate::cli) fn doors_of(actions: &[Action]) -> Vec<Door> {
     let door = |action: &Action| match action {
         Action::Take(door) => Some(*door),
-        Action::PickUp | Action::Drop => None,
+        Action::Do(_) => None,
     };
     actions.iter().filter_map(door).collect()
 }

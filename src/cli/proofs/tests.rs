@@ -233,7 +233,7 @@ fn several_worlds_are_numbered() {
         for (world, edges) in [(0, 1), (1, 2)] {
             draw::start::<2>(choose, edges)?;
             let (marker, pose, doors) = (&Undirected, Dart(0), vec![Door(2)]);
-            choose.show(|| Exhibit::Walk { world, marker, pose, doors });
+            choose.show(|| Exhibit::Walk { world, marker: *marker, pose, doors });
         }
         Ok(())
     }

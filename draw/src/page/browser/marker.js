@@ -27,7 +27,7 @@ function sightings(marker, graph, placed, pose) {
       return (far === null ? [known, known + 1] : [known]).map((count) => [NOTHING, "marker", "2 markers"][count]);
     }
     case "two-distinct": {
-      const seen = (second) => [[NOTHING, "second marker"], ["first marker", "both markers"]][Number(here)][Number(second)];
+      const seen = (second) => [[NOTHING, "second marker"], ["first marker", "first and second marker"]][Number(here)][Number(second)];
       return far === null ? [seen(false), seen(true)] : [seen(there)];
     }
     default:

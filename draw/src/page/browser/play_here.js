@@ -56,7 +56,7 @@ class Here {
       "first marker": ["first"],
       "second marker": ["second"],
       "2 markers": ["first", "first"],
-      "both markers": ["first", "second"],
+      "first and second marker": ["first", "second"],
     };
     const here = looks[sighting] ?? [];
     return here.map((look, index) => lying(22 * (index - (here.length - 1) / 2), look));

@@ -237,7 +237,7 @@ fn world(report: &LogReport) -> String {
     };
     let mut picture = WorldPicture::from(world);
     if let Some(twin) = facts.twin.as_ref().filter(|_| known.is_some()) {
-        (picture.marker, picture.start) = (twin.marker, Some(twin.first_marker));
+        (picture.marker, picture.start) = (twin.marker.into(), Some(twin.first_marker));
     }
     drawn(&svg(&picture), "A drawing of the world")
 }
@@ -246,7 +246,7 @@ fn world(report: &LogReport) -> String {
 fn twin(report: &LogReport) -> String {
     let Some(twin) = &report.facts.twin else { return String::new() };
     let caption = twin.figure.map_or(String::new(), |figure| format!("{figure} of the paper"));
-    let picture = WorldPicture { marker: twin.marker, ..WorldPicture::from(&twin.world) };
+    let picture = WorldPicture { marker: twin.marker.into(), ..WorldPicture::from(&twin.world) };
     let drawing = svg(&WorldPicture { title: "another world", caption: &caption, ..picture });
     drawn(&drawing, "A drawing of another world")
 }

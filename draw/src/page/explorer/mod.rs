@@ -59,11 +59,11 @@ pub fn explorer_page(ending: &str, run: &ExplorerRun) -> String {
 #[cfg(test)]
 mod tests {
     use toposlam_model::{
+        aid::Action,
         embedded_graph::{Dart, EmbeddedGraph},
         format::named_world::NamedWorld,
         marker::Directional,
         percept::Door,
-        world::Action,
     };
 
     use super::*;
@@ -83,7 +83,7 @@ mod tests {
         let actions = [Action::Take(Door(0)), Action::Take(Door(1))];
         let run = ExplorerRun {
             world: &world,
-            marker: &Directional,
+            marker: Directional.into(),
             actions: &actions,
             percepts: None,
             beside: Some((Beside::ReturnedMap, &map)),

@@ -2,12 +2,14 @@
 
 use serde_json::{Value, json};
 use toposlam_model::{
+    aid::Action,
+    aid::AidKind,
     embedded_graph::{Dart, EmbeddedGraph},
     folding,
     format::named_world::NamedWorld,
     mapping::{MapWalk, MappingAlgorithm, MappingEvent},
-    marker::{Directional, Marker},
-    world::{Action, GraphWorld},
+    marker::Directional,
+    world::GraphWorld,
 };
 
 use super::facing_of;
@@ -16,21 +18,21 @@ use crate::page::{
     template::in_script,
 };
 
-pub(super) fn json(games: &[NamedWorld], marker: &dyn Marker) -> String {
+pub(super) fn json(games: &[NamedWorld], marker: AidKind) -> String {
     let games = games.iter().map(|world| game(world, marker)).collect::<Vec<_>>();
     in_script(&json!({ "marker": marker.name(), "games": games }))
 }
 
 /// The world, the start, and the walks to compare with: the certificate, if there is one, and those of the algorithms
 /// that map with this marker.
-fn game(world: &NamedWorld, marker: &dyn Marker) -> Value {
+fn game(world: &NamedWorld, marker: AidKind) -> Value {
     let (graph, facing) = (&world.graph, facing_of(world));
-    let certificate = (marker == &Directional as &dyn Marker).then(|| {
+    let certificate = (marker == Directional.into()).then(|| {
         let doors = folding::certificate(graph, facing);
         walk("Certificate", &doors.into_iter().map(Action::Take).collect::<Vec<_>>(), true)
     });
     let algorithms =
-        MappingAlgorithm::ALL.iter().rev().filter(|algorithm| algorithm.marker() == marker);
+        MappingAlgorithm::ALL.iter().rev().filter(|algorithm| algorithm.aid() == marker);
     let runs = algorithms.filter_map(|&algorithm| {
         Some(walk(algorithm.info().title, &actions_of(algorithm, marker, graph, facing)?, false))
     });
@@ -50,18 +52,18 @@ fn walk(name: &str, actions: &[Action], is_shortest: bool) -> Value {
 /// The actions of an algorithm until its map is complete; `None` if its marker does not suffice.
 fn actions_of(
     algorithm: MappingAlgorithm,
-    marker: &dyn Marker,
+    marker: AidKind,
     graph: &EmbeddedGraph,
     facing: Dart,
 ) -> Option<Vec<Action>> {
-    if marker.is_movable() && !graph.is_simple() {
+    if marker.moves() && !graph.is_simple() {
         return None;
     }
     let mut actions = Vec::new();
-    let mut watch = |_: &mut GraphWorld<'_, &dyn Marker>, _: &MapWalk, event: MappingEvent| {
+    let mut watch = |_: &mut GraphWorld<'_, AidKind>, _: &MapWalk, event: MappingEvent| {
         actions.extend(event.action());
     };
-    let mut world = GraphWorld::with_marker(graph, marker, facing);
+    let mut world = GraphWorld::with_aid(graph, marker, facing);
     // No world that is a graph contradicts itself or has more darts.
     let _ = algorithm.map_world(&mut world, graph.dart_count(), &mut watch);
     Some(actions)

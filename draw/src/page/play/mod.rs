@@ -7,7 +7,7 @@ mod games;
 
 pub use games::{NoGame, games_of, random_games};
 
-use toposlam_model::{embedded_graph::Dart, format::named_world::NamedWorld, marker::Marker};
+use toposlam_model::{aid::AidKind, embedded_graph::Dart, format::named_world::NamedWorld};
 
 use super::{GRAPH_SCRIPT, MARKER_SCRIPT, PAGE_SCRIPT, PAGE_STYLE, template::filled};
 use crate::picture::{WorldPicture, escaped, svg};
@@ -33,7 +33,7 @@ const SCRIPT: [&str; 11] = [
 
 /// The page as an HTML document, for a robot with this marker. The first world is that of the first game. The same
 /// worlds give the same bytes.
-pub fn play_page(games: &[NamedWorld], marker: &dyn Marker) -> String {
+pub fn play_page(games: &[NamedWorld], marker: AidKind) -> String {
     let pictures: String = games.iter().map(|world| picture(world, marker)).collect();
     filled(
         PAGE,
@@ -48,11 +48,11 @@ pub fn play_page(games: &[NamedWorld], marker: &dyn Marker) -> String {
 }
 
 /// The picture of a world, with the place of its marker in words.
-fn picture(world: &NamedWorld, marker: &dyn Marker) -> String {
+fn picture(world: &NamedWorld, marker: AidKind) -> String {
     let (title, caption, start) = ("", "", Some(facing_of(world)));
     let drawn = WorldPicture { start, marker, title, caption, ..WorldPicture::from(world) };
     let place = drawn.marker_place().map(|place| format!("In this picture, {}. ", escaped(&place)));
-    let first = if marker.is_movable() { "The marker is where it was at first. " } else { "" };
+    let first = if marker.moves() { "The marker is where it was at first. " } else { "" };
     format!(
         "<template class=\"picture\">{}<p class=\"faint\">{}{first}The names are those of the world, not of your map. \
          Doors are numbered clockwise from the first of each place.</p></template>\n",
@@ -70,9 +70,10 @@ fn facing_of(world: &NamedWorld) -> Dart {
 mod tests {
     use serde_json::{Value, json};
     use toposlam_model::{
+        aid::markers::MOVABLE,
         embedded_graph::EmbeddedGraph,
         folding,
-        marker::{Directional, Movable, Undirected},
+        marker::{Directional, Undirected},
     };
 
     use super::*;
@@ -92,7 +93,8 @@ mod tests {
     #[test]
     fn the_data_is_the_world_and_the_walks_to_compare_with() {
         let world = world("loop");
-        let game = &data_of(&play_page(std::slice::from_ref(&world), &Directional))["games"][0];
+        let game =
+            &data_of(&play_page(std::slice::from_ref(&world), Directional.into()))["games"][0];
         assert_eq!(game["world"], json!([[[1, 0]], [[0, 0], [1, 2], [1, 1]]]));
         assert_eq!(game["start"], json!([0, 0]));
         let walks = &game["walks"];
@@ -105,7 +107,10 @@ mod tests {
             assert!(walk["actions"].as_array().unwrap().len() >= certificate.len(), "{walk}");
         }
         let games = [world.clone(), NamedWorld { start: Some(Dart(2)), ..world }];
-        assert_eq!(data_of(&play_page(&games, &Directional))["games"][1]["start"], json!([1, 1]));
+        assert_eq!(
+            data_of(&play_page(&games, Directional.into()))["games"][1]["start"],
+            json!([1, 1])
+        );
     }
 
     #[test]
@@ -113,12 +118,12 @@ mod tests {
         let lists = [("a", vec!["b"]), ("b", vec!["a"])];
         let edge = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
         let games = [NamedWorld::numbered("edge", "", edge, Some(Dart(0))), world("loop")];
-        let data = data_of(&play_page(&games, &Movable));
+        let data = data_of(&play_page(&games, MOVABLE.into()));
         assert_eq!(names(&data["games"][0]["walks"]), ["Place and back-link validation"]);
         assert_eq!(data["games"][0]["walks"][0]["actions"][0], "pick-up");
         // Its marker does not suffice in a world with a loop.
         assert_eq!(data["games"][1]["walks"], json!([]));
-        let data = data_of(&play_page(&games, &Undirected));
+        let data = data_of(&play_page(&games, Undirected.into()));
         assert_eq!(
             (&data["marker"], &data["games"][0]["walks"]),
             (&json!("undirected"), &json!([]))
@@ -127,8 +132,8 @@ mod tests {
 
     #[test]
     fn names_are_escaped_everywhere() {
-        let document = play_page(&[world(NASTY)], &Directional);
+        let document = play_page(&[world(NASTY)], Directional.into());
         assert_escaped(&document);
-        assert_eq!(document, play_page(&[world(NASTY)], &Directional));
+        assert_eq!(document, play_page(&[world(NASTY)], Directional.into()));
     }
 }

@@ -1,7 +1,7 @@
 //! The data of the page, as JSON for its script.
 
 use serde_json::{Value, json};
-use toposlam_model::{embedded_graph::Dart, format::named_world::NamedWorld, marker::MARKERS};
+use toposlam_model::{aid::FEW_STATES, embedded_graph::Dart, format::named_world::NamedWorld};
 
 use super::WalkPage;
 use crate::page::{
@@ -11,7 +11,9 @@ use crate::page::{
 
 /// The data as JSON that can stand inside a `script` element.
 pub(super) fn json(page: &WalkPage) -> String {
-    let markers = MARKERS.map(|kind| json!({ "name": kind.name(), "about": kind.about() }));
+    let aids = FEW_STATES.iter();
+    let markers: Vec<_> =
+        aids.map(|aid| json!({ "name": aid.name(), "about": aid.about() })).collect();
     let sides = [0, 1].map(|at| side(page.worlds[at], page.facings[at]));
     in_script(&json!({
         "marker": page.marker.name(),

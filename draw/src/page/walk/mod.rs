@@ -5,9 +5,7 @@ mod data;
 
 pub(super) use data::side as side_json;
 use toposlam_model::{
-    embedded_graph::Dart,
-    format::named_world::NamedWorld,
-    marker::{Marker, NoMarker},
+    aid::AidKind, embedded_graph::Dart, format::named_world::NamedWorld, marker::NoMarker,
 };
 
 use super::{GRAPH_SCRIPT, MARKER_SCRIPT, PAGE_SCRIPT, PAGE_STYLE, template::filled};
@@ -25,7 +23,7 @@ pub struct WalkPage<'a> {
     /// The dart behind the robot of the second world at the start.
     pub pose: Dart,
     /// The kind of marker at first.
-    pub marker: &'a dyn Marker,
+    pub marker: AidKind,
 }
 
 const PAGE: &str = include_str!("../browser/walk.html");
@@ -63,7 +61,7 @@ pub fn page(page: &WalkPage) -> String {
 
 /// The drawing of a world, without texts and without a marker, which the page draws.
 pub(super) fn picture(world: &NamedWorld) -> String {
-    let (title, caption, marker) = ("", "", &NoMarker as &dyn Marker);
+    let (title, caption, marker) = ("", "", NoMarker.into());
     svg(&WorldPicture { start: None, marker, title, caption, ..WorldPicture::from(world) })
 }
 
@@ -86,14 +84,14 @@ mod tests {
         NamedWorld::numbered(name, "", graph, Some(Dart(0)))
     }
 
-    fn document(marker: &'static dyn Marker, worlds: [&NamedWorld; 2]) -> String {
+    fn document(marker: AidKind, worlds: [&NamedWorld; 2]) -> String {
         page(&WalkPage { worlds, facings: [Dart(0), Dart(1)], pose: Dart(2), marker })
     }
 
     #[test]
     fn names_are_escaped_everywhere() {
         let worlds = [chain(NASTY, 1), chain("plain", 2)];
-        let document = document(&NoMarker, worlds.each_ref());
+        let document = document(NoMarker.into(), worlds.each_ref());
         assert_escaped(&document);
         assert_eq!(data_of(&document)["sides"][0]["name"], NASTY);
     }
@@ -101,7 +99,7 @@ mod tests {
     #[test]
     fn the_data_has_the_worlds_and_where_the_robots_and_the_markers_are() {
         let worlds = [chain("one", 1), chain("two", 2)];
-        let data = data_of(&document(&Undirected, worlds.each_ref()));
+        let data = data_of(&document(Undirected.into(), worlds.each_ref()));
         assert_eq!(data["marker"], "undirected");
         assert_eq!(data["markers"].as_array().unwrap().len(), 8);
         let [one, two] = [&data["sides"][0], &data["sides"][1]];

@@ -111,6 +111,8 @@ impl Page {
                 let dashes = match look {
                     MarkerLook::One => "",
                     MarkerLook::Other => " stroke-dasharray=\"4 3\"",
+                    MarkerLook::Third => " stroke-dasharray=\"1 3\"",
+                    MarkerLook::Fourth => " stroke-dasharray=\"7 2 1 2\"",
                 };
                 let stroke =
                     format!("fill=\"none\" stroke=\"{MARKER}\" stroke-width=\"2.4\"{dashes}");

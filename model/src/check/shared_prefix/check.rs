@@ -139,7 +139,7 @@ impl SharedPrefixCheck {
         most_moves: &AtomicU64,
         watch: &dyn Watch,
     ) -> (PartTally, f64) {
-        let mut judge = LeafJudge::new(&explorer.marker(), most_moves);
+        let mut judge = LeafJudge::new(&explorer.aid(), most_moves);
         let mut search = RunSearch::new(explorer, self.draft.clone(), prefix, None, watch);
         let ended = search
             .for_each_end(&mut |world, explorer, end| judge.judge(world, explorer, &end, watch));

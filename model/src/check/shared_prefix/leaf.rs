@@ -7,6 +7,7 @@ use std::{
 
 use super::{LazyWorld, search::LazyRunEnd};
 use crate::{
+    aid::Aid,
     check::{EnumeratedStart, PartTally, judge::check_moves, judge_map, one_by_one::check_stop},
     embedded_graph::EmbeddedGraph,
     enumerate::Watch,
@@ -27,8 +28,8 @@ pub(super) struct LeafJudge<'m> {
 }
 
 impl<'m> LeafJudge<'m> {
-    pub(super) fn new(marker: &impl Marker, most_moves: &'m AtomicU64) -> Self {
-        let directional = marker.name() == Directional.name();
+    pub(super) fn new(aid: &impl Aid, most_moves: &'m AtomicU64) -> Self {
+        let directional = aid.name() == Marker::name(&Directional);
         let certificates = directional.then(MarkerTree::default);
         let (tally, candidate) = (PartTally::default(), Candidate::default());
         Self { tally, candidate, certificates, most_moves }
@@ -37,7 +38,7 @@ impl<'m> LeafJudge<'m> {
     /// Judges each start that agrees with the record. Breaks if the watch stops.
     pub(super) fn judge<E: Explorer>(
         &mut self,
-        world: &LazyWorld<E::Marker>,
+        world: &LazyWorld<E::Aid>,
         explorer: &E,
         end: &LazyRunEnd,
         watch: &dyn Watch,
@@ -57,7 +58,7 @@ impl<'m> LeafJudge<'m> {
     /// Judges a run in one of these starts, as [`judge_start`](crate::check::judge_start).
     fn judge_run<E: Explorer>(
         &mut self,
-        world: &LazyWorld<E::Marker>,
+        world: &LazyWorld<E::Aid>,
         explorer: &E,
         graph: &EmbeddedGraph,
     ) -> Result<(), Flaw> {

@@ -7,6 +7,7 @@ use super::{
     world::{PrefixSource, RobotState},
 };
 use crate::{
+    aid::Aid,
     enumerate::{Answer, Draft, Watch},
     mapping::{Explorer, Flaw},
 };
@@ -25,12 +26,12 @@ pub(super) enum LazyRunEnd {
 struct Saved<E: Explorer> {
     explorer: E,
     choice: Option<E::Choice>,
-    robot: RobotState,
+    robot: RobotState<<E::Aid as Aid>::Placed>,
 }
 
 /// A depth-first search through the runs of an explorer.
 pub(super) struct RunSearch<'w, E: Explorer> {
-    pub(super) world: LazyWorld<E::Marker>,
+    pub(super) world: LazyWorld<E::Aid>,
     pub(super) explorer: E,
     choice: Option<E::Choice>,
     /// The state before each step in which something was decided. Memory is kept.
@@ -51,7 +52,7 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
         let edges = draft.edges_left();
         let bounds = (1..=edges + 1).map(|vertices| explorer.move_bound(edges, vertices));
         let bound = bounds.max().unwrap_or(0);
-        let world = LazyWorld::new(draft, explorer.marker(), bound, prefix);
+        let world = LazyWorld::new(draft, explorer.aid(), bound, prefix);
         explorer.limit_darts(2 * edges);
         Self { world, explorer, choice: None, saved: Vec::new(), cut_at, watch }
     }
@@ -59,7 +60,7 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
     /// Visits the end of each run, in a fixed order.
     pub(super) fn for_each_end(
         &mut self,
-        visit: &mut impl FnMut(&LazyWorld<E::Marker>, &E, LazyRunEnd) -> ControlFlow<()>,
+        visit: &mut impl FnMut(&LazyWorld<E::Aid>, &E, LazyRunEnd) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         self.save(0);
         for run in 1_u64.. {
@@ -77,13 +78,18 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
 
     fn save(&mut self, step: usize) {
         let Self { world, explorer, saved, .. } = self;
-        let (choice, robot) = (self.choice, world.robot());
+        let choice = self.choice;
         match saved.get_mut(step) {
             Some(saved) => {
                 saved.explorer.clone_from(explorer);
-                (saved.choice, saved.robot) = (choice, robot);
+                saved.robot.clone_from(world.robot());
+                saved.choice = choice;
             }
-            None => saved.push(Saved { explorer: explorer.clone(), choice, robot }),
+            None => saved.push(Saved {
+                explorer: explorer.clone(),
+                choice,
+                robot: world.robot().clone(),
+            }),
         }
         world.step = step;
     }
@@ -92,7 +98,7 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
         let Self { world, explorer, saved, .. } = self;
         explorer.clone_from(&saved[step].explorer);
         self.choice = saved[step].choice;
-        world.set_robot(saved[step].robot);
+        world.set_robot(&saved[step].robot);
         world.step = step;
     }
 
@@ -123,7 +129,7 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
     /// one: otherwise the map is there.
     fn make_step(&mut self) -> Result<bool, Flaw> {
         let Self { world, explorer, choice, .. } = self;
-        if !world.robot().has_begun {
+        if !world.robot().has_begun() {
             world.open_start()?;
             explorer.begin(world)?;
         } else if let Some(choice) = *choice {

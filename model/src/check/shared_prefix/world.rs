@@ -1,12 +1,12 @@
 //! A world that is decided while the robot explores it.
 
 use crate::{
+    aid::{Action, Aid, AidAction, RefusedAction, State},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Answer, Answers, Draft},
     mapping::{FACING, ObservedWorld},
-    marker::Marker,
     percept::{Door, Percept, Sighting},
-    world::{MarkerCarrier, RefusedAction, State, World},
+    world::{AidHandler, World},
 };
 
 /// An answer of the world, and those that were not given yet.
@@ -30,24 +30,29 @@ pub(super) enum PrefixSource {
 }
 
 /// The robot in its world, between two moves.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RobotState {
-    state: State,
+#[derive(Clone, Debug)]
+pub(super) struct RobotState<P> {
+    /// `None` until the run has begun: until the start vertex has a degree, and the aid is placed.
+    state: Option<State<P>>,
     pub(super) moves: u64,
-    /// Whether the run has begun: the start vertex has a degree, and the marker is placed.
-    pub(super) has_begun: bool,
+}
+
+impl<P> RobotState<P> {
+    pub(super) fn has_begun(&self) -> bool {
+        self.state.is_some()
+    }
 }
 
 /// A world of a class and a size that is decided while the robot explores it. It is a start with one of
-/// the [markers](Marker) at it.
+/// the [aids](Aid) at it.
 ///
-/// If the marker is [local](Marker::is_local), nothing is decided before the robot asks. Otherwise the whole
+/// If the aid is [local](Aid::is_local), nothing is decided before the robot asks. Otherwise the whole
 /// world is decided when the robot first looks.
 #[derive(Debug)]
-pub struct LazyWorld<M> {
+pub struct LazyWorld<A: Aid> {
     pub(super) draft: Draft,
-    marker: M,
-    robot: RobotState,
+    aid: A,
+    robot: RobotState<A::Placed>,
     bound: u64,
     pub(super) decisions: Vec<Decision>,
     prefix: PrefixSource,
@@ -59,13 +64,12 @@ pub struct LazyWorld<M> {
     pub(super) weight: f64,
 }
 
-impl<M: Marker> LazyWorld<M> {
-    pub(super) fn new(draft: Draft, marker: M, bound: u64, prefix: PrefixSource) -> Self {
-        let state = State { pose: FACING, placed: None };
+impl<A: Aid> LazyWorld<A> {
+    pub(super) fn new(draft: Draft, aid: A, bound: u64, prefix: PrefixSource) -> Self {
         Self {
             draft,
-            marker,
-            robot: RobotState { state, moves: 0, has_begun: false },
+            aid,
+            robot: RobotState { state: None, moves: 0 },
             bound,
             decisions: Vec::new(),
             prefix,
@@ -81,16 +85,17 @@ impl<M: Marker> LazyWorld<M> {
         self.draft.graph()
     }
 
-    pub(super) fn robot(&self) -> RobotState {
-        self.robot
+    pub(super) fn robot(&self) -> &RobotState<A::Placed> {
+        &self.robot
     }
 
-    pub(super) fn set_robot(&mut self, robot: RobotState) {
-        self.robot = robot;
+    pub(super) fn set_robot(&mut self, robot: &RobotState<A::Placed>) {
+        self.robot.clone_from(robot);
     }
 
+    #[inline]
     pub(super) fn pose(&self) -> Dart {
-        self.robot.state.pose
+        self.robot.state.as_ref().map_or(FACING, |state| state.pose)
     }
 
     /// Whether more than one answer may be possible later.
@@ -155,7 +160,7 @@ impl<M: Marker> LazyWorld<M> {
         if self.graph().vertex_count() == 0 {
             self.decide(None)?;
         }
-        if !self.marker.is_local() {
+        if !self.aid.is_local() {
             loop {
                 let graph = self.graph();
                 let free = graph.darts().find(|&dart| graph.joined(dart).is_none());
@@ -163,9 +168,8 @@ impl<M: Marker> LazyWorld<M> {
                 self.decide(Some(free))?;
             }
         }
-        let placed = self.marker.first_alike(self.graph(), FACING);
-        self.robot.state = State { pose: FACING, placed: Some(placed) };
-        self.robot.has_begun = true;
+        let placed = self.aid.placed(self.graph(), FACING);
+        self.robot.state = Some(State { pose: FACING, placed });
         Ok(())
     }
 
@@ -178,26 +182,19 @@ impl<M: Marker> LazyWorld<M> {
         self.decide(Some(dart))?;
         Ok(self.graph().opposite(dart))
     }
-
-    #[inline]
-    fn sighting(&self) -> Sighting {
-        let State { pose, placed } = self.robot.state;
-        match placed {
-            Some(placed) => self.marker.sighting(self.graph(), placed, pose),
-            None => Sighting::Nothing,
-        }
-    }
 }
 
-impl<M: Marker> ObservedWorld for LazyWorld<M> {}
+impl<A: Aid> ObservedWorld for LazyWorld<A> {}
 
-impl<M: Marker> World for LazyWorld<M> {
+impl<A: Aid> World for LazyWorld<A> {
     type Error = RefusedAction;
 
     #[inline]
     fn percept(&mut self) -> Result<Percept, RefusedAction> {
-        let degree = self.graph().degree_around(self.pose());
-        Ok(Percept { degree, sighting: self.sighting() })
+        let graph = self.graph();
+        let sighting = self.robot.state.as_ref().map(|state| self.aid.sighting(graph, state));
+        let degree = graph.degree_around(self.pose());
+        Ok(Percept { degree, sighting: sighting.unwrap_or(Sighting::Nothing) })
     }
 
     #[inline]
@@ -209,34 +206,35 @@ impl<M: Marker> World for LazyWorld<M> {
         if door.0 >= degree {
             return Err(RefusedAction::NoSuchDoor { door, degree });
         }
-        self.robot.state.pose = self.reveal(self.graph().behind(self.pose(), door))?;
+        let by = self.graph().behind(self.pose(), door);
+        let pose = self.reveal(by)?;
+        if let Some(state) = &mut self.robot.state {
+            self.aid.leave(self.draft.graph(), state, by)?;
+            state.pose = pose;
+        }
         self.robot.moves += 1;
         self.moves_made += 1;
         Ok(())
     }
 
-    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = RefusedAction>> {
+    fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = RefusedAction>> {
         Some(self)
     }
 }
 
-impl<M: Marker> MarkerCarrier for LazyWorld<M> {
+impl<A: Aid> AidHandler for LazyWorld<A> {
     type Error = RefusedAction;
 
-    fn pick_up(&mut self) -> Result<(), RefusedAction> {
-        if !self.marker.is_movable() || self.sighting() == Sighting::Nothing {
-            return Err(RefusedAction::NothingToPickUp);
+    fn handle(&mut self, action: AidAction) -> Result<(), RefusedAction> {
+        let moves = Action::Do(action).moves();
+        if self.robot.moves.saturating_add(moves) > self.bound {
+            return Err(RefusedAction::OutOfMoves { bound: self.bound });
         }
-        self.robot.state.placed = None;
-        Ok(())
-    }
-
-    fn drop(&mut self) -> Result<(), RefusedAction> {
-        if !self.marker.is_movable() || self.robot.state.placed.is_some() {
-            return Err(RefusedAction::NothingToDrop);
+        if let Some(state) = &mut self.robot.state {
+            self.aid.act(self.draft.graph(), state, action)?;
         }
-        let placed = self.marker.first_alike(self.graph(), self.pose());
-        self.robot.state.placed = Some(placed);
+        self.robot.moves += moves;
+        self.moves_made += moves;
         Ok(())
     }
 }

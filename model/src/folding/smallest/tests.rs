@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
+    aid::State,
     any_graph::{any_graph, starts},
     folding::fold,
     isomorphism::code,
@@ -13,7 +14,7 @@ use crate::{
         Trace, TraceEventKind, poses,
         tests::{explored, lollipop, recorded, walked},
     },
-    world::{GraphWorld, State},
+    world::GraphWorld,
 };
 
 fn search(class: Class) -> WorldSearch {
@@ -44,7 +45,7 @@ fn by_trying_all(trace: &Trace, class: Class, most: usize) -> Option<usize> {
 
 /// Whether a world explains a trace of a robot that starts with dart 0 behind it.
 fn explains(graph: &EmbeddedGraph, marker: Option<Dart>, trace: &Trace) -> bool {
-    let state = State { pose: Dart(0), placed: Some(marker.unwrap_or(Dart(0))) };
+    let state = State { pose: Dart(0), placed: marker.unwrap_or(Dart(0)) };
     match marker {
         Some(_) => poses(graph, &Directional, &[state], trace).misfit.is_none(),
         None => poses(graph, &NoMarker, &[state], trace).misfit.is_none(),

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::{WorldFileError, WorldFileErrorKind};
 use crate::{
+    aid::{AIDS, AidKind},
     embedded_graph::{Dart, EmbeddedGraph, ListError},
     floor_plan::{FloorPlan, FloorPlanError},
     format::{
@@ -12,7 +13,6 @@ use crate::{
         },
         named_world::{NamedWorld, StartError},
     },
-    marker::{MARKERS, Marker},
 };
 
 /// The clockwise lists of a file: each vertex and its list, in the order of the file.
@@ -164,8 +164,8 @@ fn start(world: &NamedWorld, start: &DocumentTable<'_>) -> Result<Dart, WorldFil
     })
 }
 
-fn marker(name: DocumentValue<'_>) -> Result<&'static dyn Marker, DocumentError> {
-    name.word(&MARKERS.map(|marker| (marker.name(), marker)))
+fn marker(name: DocumentValue<'_>) -> Result<AidKind, DocumentError> {
+    name.word(&AIDS.map(|aid| (aid.name(), aid)))
 }
 
 fn unnamed(graph: EmbeddedGraph, vertex_names: Vec<String>) -> NamedWorld {

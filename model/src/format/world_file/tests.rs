@@ -2,11 +2,11 @@ use proptest::{collection::vec, prelude::*};
 
 use super::*;
 use crate::{
+    aid::AIDS,
     any_graph::{Class, any_graph},
     embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
     format::named_world::NamedWorld,
-    marker::MARKERS,
 };
 
 fn message(text: &str) -> String {
@@ -385,7 +385,7 @@ fn deep_nesting_is_rejected() {
 #[test]
 fn a_start_may_name_its_marker() {
     let graph = EmbeddedGraph::chain(1);
-    for marker in MARKERS {
+    for marker in AIDS {
         let world = NamedWorld {
             marker: Some(marker),
             ..NamedWorld::numbered("", "", graph.clone(), Some(Dart(0)))

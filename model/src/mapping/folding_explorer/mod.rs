@@ -142,7 +142,7 @@ impl FoldingRun {
 /// The folding explorer. Its default choices break every tie. The map is complete when its trail is
 /// [complete](FoldedTrail::is_complete); the trail has at most [`MAX_DARTS`](crate::folding::MAX_DARTS) darts.
 impl Explorer for FoldingRun {
-    type Marker = MarkerKind;
+    type Aid = MarkerKind;
     type Choice = FoldingStep;
 
     const INFO: ExplorerInfo = ExplorerInfo {
@@ -152,7 +152,7 @@ impl Explorer for FoldingRun {
         order: CostOrder::EdgesSquaredVertices,
     };
 
-    fn marker(&self) -> MarkerKind {
+    fn aid(&self) -> MarkerKind {
         Directional
     }
 

@@ -15,6 +15,7 @@ use super::{
     walks::{ArrivalMeasurement, EarlierWalk, EarlierWalks, sees_marker},
 };
 use crate::{
+    aid::Aid,
     embedded_graph::Dart,
     folding::FoldedTrail,
     mapping::{
@@ -23,7 +24,6 @@ use crate::{
         audit::{AuditMove, audit_times, try_doors},
         explore,
     },
-    marker::Marker,
     measurement::{MeasurementCheck, MeasurementNoise},
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, World},
@@ -51,7 +51,7 @@ pub trait Relocate: World {
     }
 }
 
-impl<M: Marker> Relocate for GraphWorld<'_, M> {}
+impl<A: Aid> Relocate for GraphWorld<'_, A> {}
 
 /// How much a robot does for a right map.
 #[derive(Clone, Copy, Debug, PartialEq)]

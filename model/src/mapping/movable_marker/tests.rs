@@ -120,7 +120,7 @@ impl Flaw {
 }
 
 impl Explorer for Broken {
-    delegate_to_run!(Dart);
+    delegate_to_run!(MovableMarkers, Dart);
 
     fn step<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
         let Self { flaw, run } = self;
@@ -202,7 +202,7 @@ fn every_broken_variant_is_caught_on_a_small_start() {
 fn a_step_out_of_order_is_an_error() {
     let error = |step| Err(MappingError::InvalidStep(step));
     let graph = EmbeddedGraph::chain(2);
-    let mut world = GraphWorld::with_marker(&graph, Movable, Dart(1));
+    let mut world = GraphWorld::with_aid(&graph, MOVABLE, Dart(1));
     let mut run = MovableMarkerRun::new(4);
     assert_eq!((run.choose().unwrap(), run.next_candidate()), (None, None));
     let unexplored = InvalidStep::NotUnexplored(Dart(0));
