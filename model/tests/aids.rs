@@ -226,7 +226,7 @@ fn markers_and_robots_without_a_front_do_not_tell_two_bouquets_apart_however_man
         .map(|edges| EmbeddedGraph::from_edge_lists(&[("v", edges.to_vec())]).unwrap());
     let [one, other] = &bouquets;
     let mut told_apart = Vec::new();
-    for aid in AIDS.into_iter().filter(|aid| aid.moves()) {
+    for aid in AIDS.into_iter().filter(Aid::moves) {
         let comparison = Comparison::new(aid, (one, Dart(0)), (other, Dart(0)));
         let starts = aid.starts(other, Dart(0));
         if starts.iter().all(|&start| comparison.walk([Dart(0), start]).is_some()) {
@@ -245,7 +245,7 @@ fn the_smallest_pairs_of_aids_that_move() {
         let findings = AmbiguitySearch::new(class, edges, aid).unwrap().run(&()).unwrap();
         findings.smallest().map(|pair| pair.map(|world| world.graph.edge_count()))
     };
-    for aid in AIDS.into_iter().filter(|aid| aid.moves()) {
+    for aid in AIDS.into_iter().filter(Aid::moves) {
         let has_front = ["directional", "string", "team-2", "team-3"]
             .iter()
             .any(|front| aid.name().contains(front) && !aid.name().ends_with("round"));

@@ -306,7 +306,7 @@ fn the_states_of_a_triangle_are_its_poses_times_the_places_of_the_marker() {
         ("movable-directional", 6 * (6 + 1)),
         // It lies at the start vertex, or over one of the two edges there; or the robot holds it, with its back to the
         // edge over which it runs, or not.
-        ("string-1", 6 * (1 + 2) + 2 * 1 + 2 * 2),
+        ("string-1", 6 * (1 + 2) + 2 + 2 * 2),
         ("team-2", 6 * 6),
         ("team-3-round", 6 * 6 * 6),
     ] {

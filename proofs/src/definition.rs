@@ -4,9 +4,9 @@
 use std::mem;
 
 use toposlam_model::{
-    aid::{Aid, State},
+    aid::{Aid, Places, State},
+    ambiguity::PlacedRobot,
     embedded_graph::{Dart, EmbeddedGraph},
-    world::GraphWorld,
 };
 
 /// Whether the entry at each number's entry is that number, and the entry is another number.
@@ -132,12 +132,12 @@ pub fn isomorphic(one: (&EmbeddedGraph, Dart), other: (&EmbeddedGraph, Dart)) ->
 /// Whether these pairs of states are a bisimulation that contains the starts of the two worlds: the
 /// states exist, and a marker that cannot be carried stays in its place; in each pair the robots perceive
 /// the same and have the same actions; and each action leads to a pair.
-pub fn is_bisimulation<A: Aid + Clone>(
-    pairs: &[(State<A::Placed>, State<A::Placed>)],
-    one: &GraphWorld<A>,
-    other: &GraphWorld<A>,
+pub fn is_bisimulation<'a>(
+    pairs: &[(State<Places>, State<Places>)],
+    one: &PlacedRobot<'a>,
+    other: &PlacedRobot<'a>,
 ) -> bool {
-    let exists = |world: &GraphWorld<A>, state: &State<A::Placed>| {
+    let exists = |world: &PlacedRobot<'a>, state: &State<Places>| {
         let is_dart = |dart: Dart| dart.at() < world.graph().dart_count();
         is_dart(state.pose) && world.aid().exists(world.graph(), &state.placed)
     };

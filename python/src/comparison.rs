@@ -146,7 +146,7 @@ fn answer(
 pub(crate) fn actions(py: Python<'_>, actions: &[Action]) -> PyResult<Vec<Py<PyAny>>> {
     let action = |action: &Action| match action {
         Action::Take(door) => door.0.into_py_any(py),
-        other => other.to_string().into_py_any(py),
+        Action::Do(action) => action.to_string().into_py_any(py),
     };
     actions.iter().map(action).collect()
 }

@@ -225,7 +225,7 @@ impl CounterexampleArguments {
     }
 
     /// Connects to the other processes, if there are others.
-    fn join_cluster<'m>(
+    fn join_cluster(
         &self,
         markers: impl Iterator<Item = AidKind>,
         edges: usize,

@@ -125,7 +125,6 @@ impl WorldPicture<'_> {
             }
             parts => {
                 let at = |part: &MarkerPart| match part {
-                    MarkerPart::At { vertex, look: MarkerLook::One } => name(*vertex),
                     MarkerPart::At { vertex, look: MarkerLook::Other } => {
                         format!("{} (dashed)", name(*vertex))
                     }

@@ -72,7 +72,7 @@ impl MovableMarkers {
     }
 
     /// The markers that lie at the robot's vertex.
-    fn here(self, graph: &EmbeddedGraph, state: &State<Places>) -> impl Iterator<Item = usize> {
+    fn here(graph: &EmbeddedGraph, state: &State<Places>) -> impl Iterator<Item = usize> {
         let vertex = graph.vertex(state.pose);
         let lies_here =
             move |place: &Option<Dart>| place.is_some_and(|dart| graph.vertex(dart) == vertex);
@@ -109,7 +109,7 @@ impl Aid for MovableMarkers {
     }
 
     fn sighting(&self, graph: &EmbeddedGraph, state: &State<Places>) -> Sighting {
-        let here = self.here(graph, state);
+        let here = Self::here(graph, state);
         if self.are_alike {
             let count = here.count() as u32;
             if count == 0 { Sighting::Nothing } else { Sighting::Lying(count) }
@@ -163,11 +163,11 @@ impl Aid for MovableMarkers {
         let number = |at: usize| at as u8 + 1;
         let carried = |at: &usize| state.placed[*at].is_none();
         if self.are_alike {
-            let pick_up = self.here(graph, state).next().map(|_| AidAction::PickUp);
+            let pick_up = Self::here(graph, state).next().map(|_| AidAction::PickUp);
             let drop = (0..state.placed.len()).any(|at| carried(&at)).then_some(AidAction::Drop);
             pick_up.into_iter().chain(drop).collect()
         } else {
-            let pick_up = self.here(graph, state).map(|at| AidAction::PickUpMarker(number(at)));
+            let pick_up = Self::here(graph, state).map(|at| AidAction::PickUpMarker(number(at)));
             let dropped = (0..state.placed.len()).filter(carried);
             pick_up.chain(dropped.map(|at| AidAction::DropMarker(number(at)))).collect()
         }
@@ -181,9 +181,9 @@ impl Aid for MovableMarkers {
     ) -> Result<(), RefusedAction> {
         let number = |number: u8| usize::from(number).wrapping_sub(1);
         let (found, place) = match (action, self.are_alike) {
-            (AidAction::PickUp, true) => (self.here(graph, state).next(), None),
+            (AidAction::PickUp, true) => (Self::here(graph, state).next(), None),
             (AidAction::PickUpMarker(which), false) => {
-                (self.here(graph, state).find(|&at| at == number(which)), None)
+                (Self::here(graph, state).find(|&at| at == number(which)), None)
             }
             (AidAction::Drop, true) | (AidAction::DropMarker(_), false) => {
                 let is_carried = |at: &usize| match action {

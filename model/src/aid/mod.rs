@@ -417,7 +417,7 @@ dispatched!(AidKind, with_aid);
 dispatched!(AnyAid<'_>, with_any_aid);
 
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{0}` is not a marking aid; they are {names}", names = AIDS.map(|aid| aid.name()).join(", "))]
+#[error("`{0}` is not a marking aid; they are {names}", names = AIDS.map(AidKind::name).join(", "))]
 pub struct UnknownAid(String);
 
 /// The marking aid with this name.

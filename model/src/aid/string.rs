@@ -121,9 +121,10 @@ impl Aid for LaidString {
 
     /// `~vertex:door` for each edge over which it runs, and `@vertex` for its free end, or `+string` while the robot holds it.
     fn placed_text(&self, placed: &Places, names: &dyn PlaceNames) -> String {
-        let way: String = Self::way(placed).map(|dart| format!("~{}", names.dart(dart))).collect();
+        let way: Vec<_> = Self::way(placed).map(|dart| format!("~{}", names.dart(dart))).collect();
         let end = Self::free_end(placed);
-        way + &end.map_or_else(|| "+string".to_owned(), |end| format!("@{}", names.vertex(end)))
+        way.concat()
+            + &end.map_or_else(|| "+string".to_owned(), |end| format!("@{}", names.vertex(end)))
     }
 
     fn moves(&self) -> bool {

@@ -26,12 +26,10 @@ impl Team {
         Self { robots, shows_heading }
     }
 
-    /// Whether a robot is at the vertex of another one, as that one sees it.
-    fn seen(self, graph: &EmbeddedGraph, from: Dart, other: Dart) -> Option<Option<Door>> {
-        (graph.vertex(from) == graph.vertex(other)).then(|| {
-            let (from, to) = (graph.index(from), graph.index(other));
-            self.shows_heading.then(|| Door::between(from, to, graph.degree_around(other)))
-        })
+    /// The door along which a robot stands, as another one at its vertex counts, if that is shown.
+    fn along(self, graph: &EmbeddedGraph, from: Dart, other: Dart) -> Option<Door> {
+        let (from, to) = (graph.index(from), graph.index(other));
+        self.shows_heading.then(|| Door::between(from, to, graph.degree_around(other)))
     }
 
     fn others(placed: &Places) -> impl Iterator<Item = Dart> {
@@ -84,10 +82,11 @@ impl Aid for Team {
         let mut view = TeamView::default();
         let mut second = None;
         for (shown, other) in view.0.iter_mut().zip(Self::others(&state.placed)) {
-            *shown = if let Some(along) = self.seen(graph, state.pose, other) {
-                OtherRobot::Here { along }
-            } else if let Some(along) = second.and_then(|second| self.seen(graph, second, other)) {
-                OtherRobot::WithSecond { along }
+            let is_with = |robot: &Dart| graph.vertex(*robot) == graph.vertex(other);
+            *shown = if is_with(&state.pose) {
+                OtherRobot::Here { along: self.along(graph, state.pose, other) }
+            } else if let Some(second) = second.filter(is_with) {
+                OtherRobot::WithSecond { along: self.along(graph, second, other) }
             } else {
                 OtherRobot::Elsewhere { degree: graph.degree_around(other) }
             };
@@ -110,10 +109,10 @@ impl Aid for Team {
 
     /// `&2@vertex:door` for each other robot.
     fn placed_text(&self, placed: &Places, names: &dyn PlaceNames) -> String {
-        (2..)
-            .zip(Self::others(placed))
-            .map(|(robot, pose)| format!("&{robot}@{}", names.dart(pose)))
-            .collect()
+        let robots = (2..).zip(Self::others(placed));
+        let texts: Vec<_> =
+            robots.map(|(robot, pose)| format!("&{robot}@{}", names.dart(pose))).collect();
+        texts.concat()
     }
 
     fn moves(&self) -> bool {

@@ -42,7 +42,9 @@ fn push_number(bytes: &mut Vec<u8>, number: u32) {
 
 fn push_label(bytes: &mut Vec<u8>, (percept, held): StateLabel) {
     let mut push = |numbers: &[u32]| {
-        numbers.iter().for_each(|&number| push_number(bytes, number));
+        for &number in numbers {
+            push_number(bytes, number);
+        }
     };
     let door = |door: Option<Door>| door.map_or(0, |Door(door)| door + 1);
     push(&[percept.degree, held]);
@@ -59,12 +61,14 @@ fn push_label(bytes: &mut Vec<u8>, (percept, held): StateLabel) {
         }
         Sighting::Team(TeamView(others)) => {
             push(&[8]);
-            others.into_iter().for_each(|other| match other {
-                OtherRobot::Absent => push(&[0]),
-                OtherRobot::Elsewhere { degree } => push(&[1, degree]),
-                OtherRobot::Here { along } => push(&[2, door(along)]),
-                OtherRobot::WithSecond { along } => push(&[3, door(along)]),
-            });
+            for other in others {
+                match other {
+                    OtherRobot::Absent => push(&[0]),
+                    OtherRobot::Elsewhere { degree } => push(&[1, degree]),
+                    OtherRobot::Here { along } => push(&[2, door(along)]),
+                    OtherRobot::WithSecond { along } => push(&[3, door(along)]),
+                }
+            }
         }
     }
 }
