@@ -85,11 +85,18 @@ fn column_distances(columns: usize, cells: &[Cell], is_site: impl Fn(Cell) -> bo
     let far = (columns + cells.len() / columns.max(1)) as i32;
     let mut distances: Vec<i32> =
         cells.iter().map(|&cell| if is_site(cell) { 0 } else { far }).collect();
-    for at in columns..distances.len() {
-        distances[at] = distances[at].min(distances[at - columns] + 1);
+    let rows = cells.len() / columns.max(1);
+    let step = |beside: &[i32], row: &mut [i32]| {
+        row.iter_mut().zip(beside).for_each(|(at, &beside)| *at = (*at).min(beside + 1));
+    };
+    // Whole rows at a time are several cells at a time.
+    for row in 1..rows {
+        let (before, after) = distances.split_at_mut(row * columns);
+        step(&before[(row - 1) * columns..], &mut after[..columns]);
     }
-    for at in (0..distances.len().saturating_sub(columns)).rev() {
-        distances[at] = distances[at].min(distances[at + columns] + 1);
+    for row in (1..rows).rev() {
+        let (before, after) = distances.split_at_mut(row * columns);
+        step(&after[..columns], &mut before[(row - 1) * columns..]);
     }
     distances
 }

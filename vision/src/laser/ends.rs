@@ -121,7 +121,7 @@ fn unknown_borders(map: &Clearances, params: &LaserParams) -> Vec<bool> {
 /// greater one.
 fn maxima(set: &[usize], value: &[u32], grid: &Grid, prominence: u32) -> Vec<usize> {
     let mut order = set.to_vec();
-    order.sort_by_key(|&at| Reverse(value[at]));
+    order.sort_by_cached_key(|&at| Reverse(value[at]));
     // Components of the cells so far, each with its maximum as its root.
     let mut parent: Vec<u32> = vec![NONE; value.len()];
     let mut maxima: Vec<usize> = order.first().copied().into_iter().collect();

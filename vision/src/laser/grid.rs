@@ -35,7 +35,8 @@ pub(super) fn floor(number: f64) -> i64 {
 
 /// The least whole number that is not below this one.
 pub(super) fn ceil(number: f64) -> i64 {
-    0_i64.saturating_sub(floor(-number))
+    let towards_zero = number as i64;
+    towards_zero.saturating_add(i64::from(number > towards_zero as f64))
 }
 
 impl Grid {

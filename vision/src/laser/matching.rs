@@ -113,6 +113,7 @@ impl ScanMatcher {
     ) -> Option<Odometry> {
         let params = &self.params;
         let mut pose = *predicted;
+        let mut search = WallSearch::new(self);
         for round in 0..params.rounds {
             let part = (round + 1) as f64 / params.rounds as f64;
             let gate = params.gate + (1.0 - part) * (params.first_gate - params.gate);
@@ -128,7 +129,7 @@ impl ScanMatcher {
             for point in points {
                 let at = map_from_robot * point.point;
                 let normal = map_from_robot * point.normal;
-                let Some((wall, across)) = self.nearest(at, normal, gate) else { continue };
+                let Some((wall, across)) = search.nearest(at, normal, gate) else { continue };
                 matches += 1;
                 // Tukey's biweight: what is far off does not count.
                 let weight = (1.0 - (across / gate).powi(2)).powi(2) / params.deviation.powi(2);
@@ -154,34 +155,12 @@ impl ScanMatcher {
     /// The part of the points of a scan that lie on walls that are known, for a robot at a pose.
     pub(super) fn part_on_walls(&self, points: &[WallPoint], pose: &Odometry) -> f64 {
         let map_from_robot = from_robot(pose);
+        let mut search = WallSearch::new(self);
         let on_wall = |point: &&WallPoint| {
             let (at, normal) = (map_from_robot * point.point, map_from_robot * point.normal);
-            self.nearest(at, normal, self.params.gate).is_some()
+            search.nearest(at, normal, self.params.gate).is_some()
         };
         points.iter().filter(on_wall).count() as f64 / points.len().max(1) as f64
-    }
-
-    /// The normal of the wall on which a point lies, seen from the same side, and the distance to it along
-    /// the normal, in metres, which is at most the gate.
-    fn nearest(
-        &self,
-        at: Point2<f64>,
-        normal: Vector2<f64>,
-        gate: f64,
-    ) -> Option<(Vector2<f64>, f64)> {
-        let [column, row] = square(at);
-        let squares = (-1..=1).flat_map(|x| (-1..=1).map(move |y| [column + x, row + y]));
-        let walls = squares.filter_map(|square| self.walls.get(&square)).flatten();
-        let matched = walls.filter_map(|wall| {
-            let off = wall.point - at;
-            let across = off.dot(&wall.normal);
-            let is_same = off.norm() < self.params.reach
-                && across.abs() <= gate
-                && normal.dot(&wall.normal) > self.params.same_direction;
-            is_same.then(|| (off.norm(), wall.normal, across))
-        });
-        let nearest = matched.min_by(|one, other| one.0.total_cmp(&other.0));
-        nearest.map(|(_, normal, across)| (normal, across))
     }
 
     /// Adds points of walls, in the robot's frame, where there are none yet.
@@ -197,6 +176,52 @@ impl ScanMatcher {
                 near.push(added);
             }
         }
+    }
+}
+
+/// Looks for the walls near points. Successive points of a scan mostly lie in the same square metre.
+struct WallSearch<'a> {
+    matcher: &'a ScanMatcher,
+    /// The square of the last point, ...
+    square: Option<[i64; 2]>,
+    /// ... and the walls there and in the squares around it.
+    walls: Vec<&'a [WallPoint]>,
+}
+
+impl<'a> WallSearch<'a> {
+    fn new(matcher: &'a ScanMatcher) -> Self {
+        Self { matcher, square: None, walls: Vec::new() }
+    }
+
+    /// The normal of the wall on which a point lies, seen from the same side, and the distance to it along
+    /// the normal, in metres, which is at most the gate.
+    fn nearest(
+        &mut self,
+        at: Point2<f64>,
+        normal: Vector2<f64>,
+        gate: f64,
+    ) -> Option<(Vector2<f64>, f64)> {
+        let here = square(at);
+        let ScanMatcher { params, walls, .. } = self.matcher;
+        if self.square != Some(here) {
+            self.square = Some(here);
+            let [column, row] = here;
+            let columns = (column - 1..=column + 1)
+                .flat_map(|column| walls.range([column, row - 1]..=[column, row + 1]));
+            self.walls.clear();
+            self.walls.extend(columns.map(|(_, points)| &points[..]));
+        }
+        let matched = self.walls.iter().copied().flatten().filter_map(|wall| {
+            let off = wall.point - at;
+            let across = off.dot(&wall.normal);
+            let is_beside =
+                across.abs() <= gate && normal.dot(&wall.normal) > params.same_direction;
+            // Few are beside the point: the length is calculated for them alone.
+            let apart = is_beside.then(|| off.norm()).filter(|&apart| apart < params.reach)?;
+            Some((apart, wall.normal, across))
+        });
+        let nearest = matched.min_by(|one, other| one.0.total_cmp(&other.0));
+        nearest.map(|(_, normal, across)| (normal, across))
     }
 }
 

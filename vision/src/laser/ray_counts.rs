@@ -88,7 +88,9 @@ impl RayCounts {
                 let end = self.place(end);
                 let last = index_of(side, cell_at(end));
                 let before = last.map(|last| self.passes[last]);
-                for_cells(side, [from, end], 1.0, |at| self.passes[at] += more);
+                for_cells(side, [from, end], 1.0, |at, is_new| {
+                    self.passes[at] += if is_new { more } else { 0 };
+                });
                 // A ray does not pass the cell in which it ends.
                 if let Some((last, before)) = last.zip(before) {
                     self.passes[last] = before;
@@ -99,8 +101,8 @@ impl RayCounts {
         for ends in &rays.walls {
             let ends = ends.map(|end| self.place(end));
             let known = ends.map(|end| index_of(side, cell_at(end)));
-            for_cells(side, ends, 2.0, |at| {
-                if !known.contains(&Some(at)) {
+            for_cells(side, ends, 2.0, |at, is_new| {
+                if is_new && !known.contains(&Some(at)) {
                     self.hits[at] += more;
                 }
             });
@@ -113,16 +115,19 @@ impl RayCounts {
         cells: usize,
         params: &LocalMapParams,
     ) -> [NearWalls; 2] {
-        let is_known = |at: usize| self.hits[at] > 0 || self.passes[at] > 0;
-        let near = |is_wall: &dyn Fn(usize) -> bool| {
-            let walls: Vec<bool> = (0..self.hits.len()).map(is_wall).collect();
-            let near = spread(&spread(&walls, self.side, 1, cells), self.side, self.side, cells);
-            let near = near.into_iter().enumerate().map(|(at, near)| is_known(at).then_some(near));
-            NearWalls { side: self.side, near: near.collect() }
-        };
-        let is_hit = |at: usize| self.hits[at] > 0;
-        let is_wall = |at: usize| self.cell(at, params) == Cell::Occupied;
-        [near(&is_hit), near(&is_wall)]
+        [
+            self.near(cells, |at| self.hits[at] > 0),
+            self.near(cells, |at| self.cell(at, params) == Cell::Occupied),
+        ]
+    }
+
+    /// What is at most this many cells from a wall, along both axes.
+    fn near(&self, cells: usize, is_wall: impl Fn(usize) -> bool) -> NearWalls {
+        let walls: Vec<bool> = (0..self.hits.len()).map(is_wall).collect();
+        let counts = self.hits.iter().zip(&self.passes);
+        let near = spread(&walls, self.side, cells).into_iter().zip(counts);
+        let near = near.map(|(near, (&hits, &passes))| (hits > 0 || passes > 0).then_some(near));
+        NearWalls { side: self.side, near: near.collect() }
     }
 
     /// Whether a window of this many cells a side fits around a point.
@@ -181,90 +186,111 @@ impl RayCounts {
         cell_at(self.place(point))
     }
 
-    /// A point in cells from the corner.
+    /// A point in cells from the corner; far away, one beyond every map.
     fn place(&self, point: Point2<f64>) -> Vector2<f64> {
-        (point - self.origin) / self.cell
+        let place = (point - self.origin) / self.cell;
+        place.map(|at| at.clamp(-FARTHEST, FARTHEST))
     }
 }
 
-/// The cells that are set, and those at most so many before or behind one in its row (`stride` 1) or column (`stride` the
-/// side).
-fn spread(cells: &[bool], side: usize, stride: usize, reach: usize) -> Vec<bool> {
-    let mut spread = vec![false; cells.len()];
-    for index in (0..cells.len()).filter(|&index| cells[index]) {
-        let at = index / stride % side;
-        let first = index - at.min(reach) * stride;
-        let last = index + (side - 1 - at).min(reach) * stride;
-        for near in (first..=last).step_by(stride) {
-            spread[near] = true;
-        }
+/// The cells of a square map that are at most so many from one that is set, along both axes.
+fn spread(cells: &[bool], side: usize, reach: usize) -> Vec<bool> {
+    let join = |cells: &mut [bool], others: &[bool]| {
+        cells.iter_mut().zip(others).for_each(|(cell, other)| *cell |= other);
+    };
+    // The others that lie so many behind or before, in the order of both.
+    let join_shifted = |cells: &mut [bool], others: &[bool], shift: usize| {
+        join(cells, &others[shift..]);
+        join(&mut cells[shift..], others);
+    };
+    let reach = reach.min(side);
+    let mut along_rows = cells.to_vec();
+    let rows = along_rows.chunks_exact_mut(side).zip(cells.chunks_exact(side));
+    for (row, cells) in rows {
+        (1..=reach).for_each(|shift| join_shifted(row, cells, shift));
     }
+    let mut spread = along_rows.clone();
+    (1..=reach).for_each(|shift| join_shifted(&mut spread, &along_rows, shift * side));
     spread
 }
 
 fn index_of(side: usize, [column, row]: [i64; 2]) -> Option<usize> {
-    let within = |at: i64| (0..side as i64).contains(&at);
-    (within(column) && within(row)).then(|| row as usize * side + column as usize)
+    // As numbers without a sign, those below zero are beyond every map.
+    let [column, row] = [column as usize, row as usize];
+    (column < side && row < side).then(|| row * side + column)
 }
 
-/// The cell at a place; far away, one beyond every map.
-#[inline]
+/// The cell at a place.
 fn cell_at(place: Vector2<f64>) -> [i64; 2] {
-    let cell = |at: f64| floor(at.clamp(-FARTHEST, FARTHEST));
-    [cell(place.x), cell(place.y)]
+    [floor(place.x), floor(place.y)]
 }
 
-/// Ends of lines are at most this many cells from the corner of a map.
+/// Places are at most this many cells from the corner of a map.
 const FARTHEST: f64 = 1e9;
 /// The parts of a cell in which samples are placed: 2^32.
 const PARTS: f64 = 4_294_967_296.0;
 
-/// Visits the cells of a square map on a line, each once, sampled this often on each cell that it crosses along its main
-/// axis.
+/// Visits the cells of a square map on a line between two places, sampled this often on each cell that it crosses along its
+/// main axis: for each sample its cell, and whether it is another one than that of the sample before.
 fn for_cells(
     side: usize,
     [from, to]: [Vector2<f64>; 2],
     density: f64,
-    mut visit: impl FnMut(usize),
+    mut visit: impl FnMut(usize, bool),
 ) {
-    let near = |at: f64| at.clamp(-FARTHEST, FARTHEST);
-    let from = Vector2::new(near(from.x), near(from.y));
-    let to = Vector2::new(near(to.x), near(to.y));
     let off = to - from;
     let steps = ceil(density * off.x.abs().max(off.y.abs())).max(1);
     let step = off / steps as f64;
-    // The samples on the map.
-    let (mut first, mut last) = (0, steps);
     let border = side as f64;
-    let is_on_map = |at: f64| (0.0..border).contains(&at);
+    let is_inner = |at: f64| 1.0 <= at && at < border - 1.0;
+    let is_all_on_map = is_inner(from.x) && is_inner(from.y) && is_inner(to.x) && is_inner(to.y);
+    let (mut first, mut last) = (0, steps);
+    if !is_all_on_map {
+        (first, last) = about_on_map(border, [from, to], step, steps);
+    }
+    let start = if first > 0 { from + first as f64 * step } else { from };
+    let in_parts = |at: f64| (at * PARTS) as i64;
+    let (mut x, mut y) = (in_parts(start.x), in_parts(start.y));
+    let (east, north) = (in_parts(step.x), in_parts(step.y));
+    if !is_all_on_map {
+        let is_on_map = |x: i64, y: i64| ((x >> 32) as usize) < side && ((y >> 32) as usize) < side;
+        while first <= last && !is_on_map(x, y) {
+            (x, y, first) = (x + east, y + north, first + 1);
+        }
+        while first <= last && !is_on_map(x + (last - first) * east, y + (last - first) * north) {
+            last -= 1;
+        }
+    }
+    let mut before = usize::MAX;
+    let samples = last + 1 - first;
+    for _ in 0..samples {
+        let at = (y >> 32) as usize * side + (x >> 32) as usize;
+        // The visitor can do without a branch, which would be hard to predict.
+        visit(at, at != before);
+        before = at;
+        (x, y) = (x + east, y + north);
+    }
+}
+
+/// The first and the last step of a line that are on a map up to this border, or at most a few steps beside it.
+#[cold]
+fn about_on_map(
+    border: f64,
+    [from, to]: [Vector2<f64>; 2],
+    step: Vector2<f64>,
+    steps: i64,
+) -> (i64, i64) {
+    let (mut first, mut last) = (0, steps);
     for axis in 0..2 {
-        if step[axis] == 0.0 || is_on_map(from[axis]) && is_on_map(to[axis]) {
+        let is_inside = |at: f64| (0.0..border).contains(&at);
+        if is_inside(from[axis]) && is_inside(to[axis]) || step[axis] == 0.0 {
             continue;
         }
         let [one, other] = [0.0, border].map(|border| (border - from[axis]) / step[axis]);
         first = first.max(floor(one.min(other)));
         last = last.min(ceil(one.max(other)));
     }
-    if first > last {
-        return;
-    }
-    let start = from + first as f64 * step;
-    let in_parts = |at: f64| (at * PARTS) as i64;
-    let (mut x, mut y) = (in_parts(start.x), in_parts(start.y));
-    let (east, north) = (in_parts(step.x), in_parts(step.y));
-    let mut before = usize::MAX;
-    let points = last - first + 1;
-    for _ in 0..points {
-        let [column, row] = [(x >> 32) as usize, (y >> 32) as usize];
-        if column < side && row < side {
-            let at = row * side + column;
-            if at != before {
-                visit(at);
-                before = at;
-            }
-        }
-        (x, y) = (x + east, y + north);
-    }
+    (first, last)
 }
 
 #[cfg(test)]
@@ -275,6 +301,22 @@ mod tests {
 
     proptest! {
         #[test]
+        fn cells_spread_along_both_axes_and_not_around_the_border(
+            set in prop::collection::vec(prop::bool::weighted(0.1), 49..=49),
+            reach in 0_usize..9,
+        ) {
+            const SIDE: usize = 7;
+            let spread = spread(&set, SIDE, reach);
+            for (at, &is_near) in spread.iter().enumerate() {
+                let reaches = |other: usize| {
+                    (at % SIDE).abs_diff(other % SIDE).max((at / SIDE).abs_diff(other / SIDE)) <= reach
+                };
+                let expected = (0..set.len()).any(|other| set[other] && reaches(other));
+                prop_assert_eq!(is_near, expected);
+            }
+        }
+
+        #[test]
         fn a_line_visits_the_cells_on_the_map_on_which_it_has_samples(
             ends in prop::array::uniform2([-30.0..50.0, -30.0..50.0_f64]),
             density in 1.0..2.0,
@@ -282,7 +324,7 @@ mod tests {
             const SIDE: usize = 20;
             let ends = ends.map(Vector2::from);
             let mut visited = Vec::new();
-            for_cells(SIDE, ends, density, |at| visited.push(at));
+            for_cells(SIDE, ends, density, |at, is_new| if is_new { visited.push(at) });
             let off = ends[1] - ends[0];
             let steps = (density * off.amax()).ceil().max(1.0);
             let samples = (0..=steps as u32).map(|step| ends[0] + f64::from(step) / steps * off);

@@ -62,7 +62,7 @@ fn nearest(set: &[bool], grid: &Grid, point: Point2<f64>, within: f64) -> Option
 fn thin(cells: &mut [bool], ways: &[usize], ends: &[End], map: &Clearances) {
     let is_end = |at: usize| ends.iter().any(|end| end.cell == at);
     let mut left = ways.to_vec();
-    left.sort_by_key(|&at| map.border[at]);
+    left.sort_by_cached_key(|&at| map.border[at]);
     loop {
         let before = left.len();
         left.retain(|&at| {
