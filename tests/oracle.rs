@@ -9,7 +9,7 @@ use std::{
 
 use serde_json::{Value, json};
 use toposlam_model::{
-    aid::{AIDS, FEW_STATES},
+    aid::{AIDS, AidKind, FEW_STATES},
     ambiguity::Comparison,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
@@ -142,7 +142,8 @@ fn no_walk_that_determines_its_world_is_shorter_than_the_certificate() {
 /// The output of `counterexample` in the format of the oracle: `KIND m placed_worlds ambiguous` and
 /// `KIND smallest M K`.
 fn counterexamples(class: &str, edges: &str, aids: &[&str]) -> String {
-    let aids: String = aids.iter().map(|aid| format!(" --aid {aid}")).collect();
+    let aids: Vec<_> = aids.iter().map(|aid| format!(" --aid {aid}")).collect();
+    let aids = aids.concat();
     let lines = objects(&format!("counterexample --class {class} --max-edges {edges}{aids}"));
     let found = lines.iter().map(|line| {
         let marker = line["marker"].as_str().unwrap();
@@ -174,7 +175,7 @@ fn the_same_worlds_are_counted_and_indistinguishable() {
 
 /// The names of the aids that move, but for the one marker that is among those above.
 fn moving_aids() -> Vec<&'static str> {
-    AIDS[FEW_STATES.len()..].iter().map(|aid| aid.name()).collect()
+    AIDS[FEW_STATES.len()..].iter().copied().map(AidKind::name).collect()
 }
 
 #[test]
@@ -204,7 +205,7 @@ fn walks_are_as_long(class: Class, edges: usize) {
     let starts: Vec<EmbeddedGraph> = (1..=edges)
         .flat_map(|edges| Enumeration::new(Each::Start, class, edges).unwrap().graphs())
         .collect();
-    let mut found = String::new();
+    let mut found = Vec::new();
     for aid in AIDS {
         let mut lengths: BTreeMap<Option<Reverse<usize>>, usize> = BTreeMap::new();
         for (at, one) in starts.iter().enumerate() {
@@ -216,12 +217,12 @@ fn walks_are_as_long(class: Class, edges: usize) {
         }
         for (length, count) in lengths.iter().rev() {
             let length = length.map_or("never".to_owned(), |Reverse(length)| length.to_string());
-            found += &format!("{} {length} {count}\n", aid.name());
+            found.push(format!("{} {length} {count}\n", aid.name()));
         }
     }
-    let names = AIDS.map(|aid| aid.name()).join(" ");
+    let names = AIDS.map(AidKind::name).join(" ");
     let Some(oracle) = oracle(&format!("ambiguity.py --walks {class} {edges} {names}")) else {
         return;
     };
-    assert_eq!(found, oracle, "{class}");
+    assert_eq!(found.concat(), oracle, "{class}");
 }

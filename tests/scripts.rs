@@ -94,7 +94,7 @@ impl Walk {
     fn doors(&self) -> Vec<Door> {
         let door = |action: &Action| match action {
             Action::Take(door) => *door,
-            other => panic!("{other} is not a door"),
+            Action::Do(action) => panic!("{action} is not a door"),
         };
         self.actions.iter().map(door).collect()
     }
