@@ -168,18 +168,20 @@ pub enum OtherRobot {
     Absent,
     /// At a vertex with so many doors, where none of the robots before it is.
     Elsewhere { degree: u32 },
-    /// Here; and the door along which it stands, if robots show that.
-    Here { along: Option<Door> },
-    /// Where the second robot is, as that one sees it.
-    WithSecond { along: Option<Door> },
+    /// Here; it does not show along which door it stands.
+    Here,
+    /// Here, along this door.
+    HereAlong(Door),
+    /// Where the second robot is; it does not show along which door it stands.
+    WithSecond,
+    /// Where the second robot is, along this door as that one counts.
+    WithSecondAlong(Door),
 }
 
 impl TeamView {
     fn seen_from(self, entry: Door, degree: u32) -> Self {
         Self(self.0.map(|robot| match robot {
-            OtherRobot::Here { along } => {
-                OtherRobot::Here { along: along.map(|door| door.seen_from(entry, degree)) }
-            }
+            OtherRobot::HereAlong(door) => OtherRobot::HereAlong(door.seen_from(entry, degree)),
             other => other,
         }))
     }
@@ -188,18 +190,18 @@ impl TeamView {
 /// `robot 2 here along door 1, robot 3 elsewhere at 4 doors`.
 impl fmt::Display for TeamView {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let along = |along: &Option<Door>| {
-            along.map(|door| format!(" along door {}", door.0)).unwrap_or_default()
-        };
-        let robot = |(number, robot): (u8, &OtherRobot)| match robot {
-            OtherRobot::Absent => None,
-            OtherRobot::Elsewhere { degree } => {
-                Some(format!("robot {number} elsewhere at {}", counted(*degree as usize, "door")))
-            }
-            OtherRobot::Here { along: door } => Some(format!("robot {number} here{}", along(door))),
-            OtherRobot::WithSecond { along: door } => {
-                Some(format!("robot {number} with robot 2{}", along(door)))
-            }
+        let robot = |(number, robot): (u8, &OtherRobot)| {
+            let place = match robot {
+                OtherRobot::Absent => return None,
+                OtherRobot::Elsewhere { degree } => {
+                    format!("elsewhere at {}", counted(*degree as usize, "door"))
+                }
+                OtherRobot::Here => "here".to_owned(),
+                OtherRobot::HereAlong(door) => format!("here along door {}", door.0),
+                OtherRobot::WithSecond => "with robot 2".to_owned(),
+                OtherRobot::WithSecondAlong(door) => format!("with robot 2 along door {}", door.0),
+            };
+            Some(format!("robot {number} {place}"))
         };
         let robots: Vec<_> = (2..).zip(&self.0).filter_map(robot).collect();
         write!(out, "{}", robots.join(", "))

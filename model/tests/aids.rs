@@ -187,7 +187,7 @@ fn robots_of_a_team_see_each_other_at_a_vertex_and_learn_by_radio_where_others_a
             "robot 2 here, robot 3 here",
         ]
     );
-    let nobody = TeamView([OtherRobot::Here { along: None }; 2]);
+    let nobody = TeamView([OtherRobot::Here; 2]);
     assert_eq!(round.sensed(), Percept { degree: 2, sighting: Sighting::Team(nobody) });
 }
 

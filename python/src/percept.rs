@@ -70,8 +70,10 @@ fn team(py: Python<'_>, TeamView(others): TeamView) -> PyResult<Py<PyAny>> {
                 seen.set_item("degree", degree)?;
                 ("elsewhere", None)
             }
-            OtherRobot::Here { along } => ("here", along),
-            OtherRobot::WithSecond { along } => ("with-second", along),
+            OtherRobot::Here => ("here", None),
+            OtherRobot::HereAlong(door) => ("here", Some(door)),
+            OtherRobot::WithSecond => ("with-second", None),
+            OtherRobot::WithSecondAlong(door) => ("with-second", Some(door)),
         };
         seen.set_item("place", place)?;
         if place != "elsewhere" {

@@ -1,5 +1,5 @@
-//! A string that the robot pays out along edges: Wang, Jenkin and Dymond, "Enhancing exploration in topological worlds with a
-//! directional immovable marker" and their earlier work with strings; the thread of Ariadne.
+//! A string that the robot pays out along edges, as the paper's introduction names it among marking aids (Wang, Jenkin and
+//! Dymond); the thread of Ariadne.
 //!
 //! One end is fixed at the start vertex. The robot holds the other end at first. While it holds it, each edge that it
 //! traverses takes an edge's length of string, but one over which the string runs last, which it winds in. Where it drops

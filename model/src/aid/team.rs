@@ -84,9 +84,11 @@ impl Aid for Team {
         for (shown, other) in view.0.iter_mut().zip(Self::others(&state.placed)) {
             let is_with = |robot: &Dart| graph.vertex(*robot) == graph.vertex(other);
             *shown = if is_with(&state.pose) {
-                OtherRobot::Here { along: self.along(graph, state.pose, other) }
+                let along = self.along(graph, state.pose, other);
+                along.map_or(OtherRobot::Here, OtherRobot::HereAlong)
             } else if let Some(second) = second.filter(is_with) {
-                OtherRobot::WithSecond { along: self.along(graph, second, other) }
+                let along = self.along(graph, second, other);
+                along.map_or(OtherRobot::WithSecond, OtherRobot::WithSecondAlong)
             } else {
                 OtherRobot::Elsewhere { degree: graph.degree_around(other) }
             };

@@ -65,8 +65,10 @@ fn push_label(bytes: &mut Vec<u8>, (percept, held): StateLabel) {
                 match other {
                     OtherRobot::Absent => push(&[0]),
                     OtherRobot::Elsewhere { degree } => push(&[1, degree]),
-                    OtherRobot::Here { along } => push(&[2, door(along)]),
-                    OtherRobot::WithSecond { along } => push(&[3, door(along)]),
+                    OtherRobot::Here => push(&[2]),
+                    OtherRobot::HereAlong(Door(door)) => push(&[3, door]),
+                    OtherRobot::WithSecond => push(&[4]),
+                    OtherRobot::WithSecondAlong(Door(door)) => push(&[5, door]),
                 }
             }
         }

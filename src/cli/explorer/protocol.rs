@@ -46,8 +46,10 @@ fn other_robot(robot: OtherRobot) -> Option<Value> {
     match robot {
         OtherRobot::Absent => None,
         OtherRobot::Elsewhere { degree } => Some(json!({ "place": "elsewhere", "degree": degree })),
-        OtherRobot::Here { along } => at("here", along),
-        OtherRobot::WithSecond { along } => at("with-second", along),
+        OtherRobot::Here => at("here", None),
+        OtherRobot::HereAlong(door) => at("here", Some(door)),
+        OtherRobot::WithSecond => at("with-second", None),
+        OtherRobot::WithSecondAlong(door) => at("with-second", Some(door)),
     }
 }
 
