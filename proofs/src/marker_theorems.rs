@@ -64,8 +64,8 @@ mod tests {
     use std::path::Path;
 
     use toposlam_model::{
+        aid::{self, FEW_STATES},
         format::world_file,
-        marker::{self, MARKERS},
     };
 
     use super::*;
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn no_theorem_contradicts_another() {
-        for marker in MARKERS {
+        for marker in FEW_STATES {
             for class in Class::ALL {
                 let rows = MARKER_THEOREMS
                     .iter()
@@ -99,7 +99,7 @@ mod tests {
                 assert!(rows.count() <= 1, "{marker:?} {class}");
             }
         }
-        assert!(MARKER_THEOREMS.iter().all(|row| marker::named(row.marker).is_ok()));
+        assert!(MARKER_THEOREMS.iter().all(|row| aid::named(row.marker).is_ok()));
     }
 
     /// The pairs of `Figures.v`, as world files. The other pairs are of multigraphs.
@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn the_table_of_the_readme_is_this_one() {
         const README: &str = include_str!("../coq/README.md");
-        for marker in MARKERS {
+        for marker in FEW_STATES {
             let cells = [Class::Multigraph, Class::Simple].map(|class| {
                 about(marker.name(), class).map_or_else(
                     || "not known".to_owned(),

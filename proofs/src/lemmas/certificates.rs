@@ -2,7 +2,7 @@
 //! bisimulations, and related robots perceive the same for ever. Section 2.2.
 
 use toposlam_model::{
-    aid::{AIDS, AidKind, AnyAid, Places, State},
+    aid::{AidKind, AnyAid, FEW_STATES, Places, State},
     ambiguity::{Comparison, PlacedRobot, Relation},
     embedded_graph::{Dart, EmbeddedGraph},
     marker::Undirected,
@@ -54,11 +54,8 @@ declare! {
     }
 }
 
-/// The fixed markers, and the one that can be carried.
-const MARKERS: usize = 8;
-
 fn marker(choose: &mut impl Choose, of: impl Fn(AidKind) -> bool) -> AidKind {
-    let kinds = || AIDS[..MARKERS].iter().copied().filter(|&marker| of(marker));
+    let kinds = || FEW_STATES.iter().copied().filter(|&marker| of(marker));
     let place = choose.below(kinds().count() as u8);
     let marker = kinds().nth(place.into()).unwrap_or(Undirected.into());
     choose.show(|| Exhibit::Value { name: "marker", value: marker.name().to_owned() });
