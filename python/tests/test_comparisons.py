@@ -158,7 +158,7 @@ def test_the_words_for_a_directed_edge_are_those_of_the_protocol():
 @pytest.mark.parametrize(
     "marker, kind, text",
     [
-        ("chalk", errors.UnknownMarkerError, "`chalk` is not a marker"),
+        ("chalk", errors.UnknownMarkerError, "`chalk` is not a marking aid"),
         (lambda pose, world: 1 / 0, errors.MarkerFunctionError, "ZeroDivisionError"),
         (lambda pose, world: [], errors.MarkerFunctionError, "unhashable"),
         (lambda: 1, errors.MarkerFunctionError, "positional argument"),
