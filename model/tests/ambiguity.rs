@@ -211,7 +211,7 @@ fn a_relation_that_is_not_kept_proves_nothing() {
         // A triangle has the darts 0 to 5.
         State { pose: Dart(6), ..one.state() },
         State { placed: Places::from_elem(Some(Dart(6)), 1), ..one.state() },
-        State { placed: Places::new(), ..one.state() },
+        State { placed: Places::from_slice(&[]), ..one.state() },
     ] {
         let more = [&pairs[..], &[(nowhere.clone(), other.state())]].concat();
         assert!(!Relation(more).verify(&one, &other), "{nowhere:?}");

@@ -113,7 +113,7 @@ fn answer(
     watcher: &Watcher,
 ) -> Result<Answer, Interrupted> {
     let numbers = |state: State<Places>| {
-        (state.pose.0, state.placed.into_iter().map(|place| place.map(|dart| dart.0)).collect())
+        (state.pose.0, state.placed.iter().map(|place| place.map(|dart| dart.0)).collect())
     };
     let [(_, facing), (graph, other_facing)] = sides;
     let facings = [facing, other_facing];

@@ -76,7 +76,7 @@ impl MovableMarkers {
         let vertex = graph.vertex(state.pose);
         let lies_here =
             move |place: &Option<Dart>| place.is_some_and(|dart| graph.vertex(dart) == vertex);
-        (0..).zip(&state.placed).filter(move |(_, place)| lies_here(place)).map(|(at, _)| at)
+        (0..).zip(state.placed.iter()).filter(move |(_, place)| lies_here(place)).map(|(at, _)| at)
     }
 
     /// Puts a marker in another place.
@@ -151,7 +151,7 @@ impl Aid for MovableMarkers {
 
     /// Which markers it carries; of those that look alike, how many.
     fn held(&self, state: &State<Places>) -> u32 {
-        let carried = (0..).zip(&state.placed).filter(|(_, place)| place.is_none());
+        let carried = (0..).zip(state.placed.iter()).filter(|(_, place)| place.is_none());
         if self.are_alike {
             carried.count() as u32
         } else {
@@ -190,7 +190,7 @@ impl Aid for MovableMarkers {
                     AidAction::DropMarker(which) => *at == number(which),
                     _ => true,
                 };
-                let carried = (0..).zip(&state.placed).filter(|(_, place)| place.is_none());
+                let carried = (0..).zip(state.placed.iter()).filter(|(_, place)| place.is_none());
                 let found = carried.map(|(at, _)| at).find(is_carried);
                 (found, Some(self.first_alike(graph, state.pose)))
             }

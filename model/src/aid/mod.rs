@@ -14,7 +14,11 @@ pub mod pointer;
 pub mod string;
 pub mod team;
 
-use std::{fmt, hash::Hash, ops::RangeInclusive};
+use std::{
+    fmt,
+    hash::Hash,
+    ops::{Deref, DerefMut, RangeInclusive},
+};
 
 use smallvec::SmallVec;
 use thiserror::Error;
@@ -179,7 +183,40 @@ impl<M: Marker> Aid for M {
 }
 
 /// Where the parts of an aid are, as darts; none for a part that the robot holds.
-pub type Places = SmallVec<[Option<Dart>; 4]>;
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Places(SmallVec<[Option<Dart>; 4]>);
+
+impl Places {
+    pub fn from_elem(place: Option<Dart>, parts: usize) -> Self {
+        Self(SmallVec::from_elem(place, parts))
+    }
+
+    pub fn from_slice(places: &[Option<Dart>]) -> Self {
+        Self(SmallVec::from_slice(places))
+    }
+}
+
+/// A slice is copied at once, where the clone of a `SmallVec` takes its elements one by one.
+impl Clone for Places {
+    #[inline]
+    fn clone(&self) -> Self {
+        Self::from_slice(&self.0)
+    }
+}
+
+impl Deref for Places {
+    type Target = SmallVec<[Option<Dart>; 4]>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl DerefMut for Places {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
+}
 
 /// Whether places are darts of a graph, and so many.
 fn are_in(placed: &Places, graph: &EmbeddedGraph, number: RangeInclusive<usize>) -> bool {

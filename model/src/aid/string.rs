@@ -180,7 +180,8 @@ impl Aid for LaidString {
             return Ok(());
         }
         if Self::behind(graph, placed) == Some(by) {
-            placed.remove(placed.len() - 2);
+            let last = placed.len() - 2;
+            placed.remove(last);
             return Ok(());
         }
         let ends = [Some(by), graph.joined(by)].into_iter().flatten();
@@ -191,7 +192,8 @@ impl Aid for LaidString {
         if laid >= usize::from(self.length) {
             return Err(RefusedAction::StringTooShort);
         }
-        placed.insert(placed.len() - 1, Some(by));
+        let end = placed.len() - 1;
+        placed.insert(end, Some(by));
         Ok(())
     }
 }

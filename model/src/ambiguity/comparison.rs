@@ -246,7 +246,12 @@ impl<'a> Pairs<'a> {
         from: Option<(usize, Action)>,
     ) -> bool {
         let [one, other] = &mut self.numbers;
+        let moves = self.worlds[0].aid().moves();
         let number = |known: &mut HashMap<State<Places>, u32>, state: &State<Places>| {
+            // The states of a robot with a fixed marker are its poses.
+            if !moves {
+                return state.pose.0;
+            }
             if let Some(&number) = known.get(state) {
                 return number;
             }
@@ -271,7 +276,7 @@ impl<'a> Pairs<'a> {
             if self.next.is_multiple_of(BETWEEN_QUESTIONS) {
                 watch.check_stop()?;
             }
-            let [one, other] = self.at(&pair);
+            let [mut one, mut other] = self.at(&pair);
             if self.next == 0 && one.sensed() != other.sensed() {
                 return Ok(self.difference_at(0));
             }
@@ -279,7 +284,6 @@ impl<'a> Pairs<'a> {
                 return Ok(Look::Enough);
             }
             for action in one.actions() {
-                let (mut one, mut other) = (one.clone(), other.clone());
                 // Robots that perceive the same can do the same.
                 let acted = one.act(action).and_then(|()| other.act(action));
                 let from = Some((self.next, action));
@@ -288,6 +292,7 @@ impl<'a> Pairs<'a> {
                 if is_new && one.sensed() != other.sensed() {
                     return Ok(self.difference_at(self.found.len() - 1));
                 }
+                (one, other) = (one.at(pair.0.clone()), other.at(pair.1.clone()));
             }
             self.next += 1;
         }

@@ -58,7 +58,7 @@ impl<'g, A: Aid> GraphWorld<'g, A> {
         let Self { graph, aid, state, .. } = self;
         let can_leave = |door: &Door| {
             let by = graph.behind(state.pose, *door);
-            aid.leave(graph, &mut state.clone(), by).is_ok()
+            !aid.moves() || aid.leave(graph, &mut state.clone(), by).is_ok()
         };
         let doors = (0..graph.degree_around(state.pose)).map(Door).filter(can_leave);
         let others = aid.actions(graph, state).into_iter().map(Action::Do);
