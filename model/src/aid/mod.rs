@@ -4,7 +4,7 @@
 //! the start placed it. Other aids have a state, and actions beside doors:
 //!
 //! * [`markers`]: markers that are picked up, carried and dropped (Dudek, Jenkin, Milios and Wilkes, 1989 and 1991);
-//! * [`pointer`]: a directional marker that is carried;
+//! * [`pointer`](mod@pointer): a directional marker that is carried;
 //! * [`string`]: a string that is paid out along edges (Wang, Jenkin and Dymond);
 //! * [`team`]: other robots (Bender and Slonim, 1994).
 
