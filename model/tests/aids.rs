@@ -156,6 +156,13 @@ fn a_string_cannot_be_seen_at_a_vertex_with_too_many_doors() {
     let star = EmbeddedGraph::from_edge_lists(&lists).unwrap();
     let mut world = begin("string-1", &star, 0);
     assert_eq!(refused(&mut world, "0"), RefusedAction::TooManyDoors { most: 32 });
+    // So nothing is claimed about such a world.
+    let comparison = Comparison::new(*world.aid(), (&star, Dart(0)), (&star, Dart(0)));
+    let [one, other] = comparison.starts([Dart(0); 2]);
+    for most in [0, usize::MAX] {
+        let found = comparison.bisimulation([Dart(0); 2], most, &()).unwrap().unwrap();
+        assert!(!found.verify(&one, &other));
+    }
     // Without the string it goes there.
     assert_eq!(done(&mut world, "drop 0 0").last().unwrap(), "fixed end, free end");
 }

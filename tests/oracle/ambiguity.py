@@ -437,7 +437,7 @@ def classes_of_starts(kind, worlds):
     percepts, following, starts = [], [], []
     row, row_graph = {}, None
     for world in worlds:
-        # A state of an aid that moves tells, with the graph, all that happens from there on. So a
+        # What happens after a state of an aid that moves depends on it and on the graph alone. So a
         # placed world whose start states are in the last table, of the same graph, has all of its
         # states there. A string's fixed end stays, so there each placed world has its own states.
         world_starts = start_states(kind, world)

@@ -90,6 +90,11 @@ pub trait Aid: Sync {
         String::new()
     }
 
+    /// Whether it can be seen at every vertex of a graph. Otherwise nothing that is found there is a proof.
+    fn is_seen_everywhere(&self, _graph: &EmbeddedGraph) -> bool {
+        true
+    }
+
     /// Whether what it adds to a percept depends on the vertices of its darts and of the pose, and on the
     /// indices there, and on nothing else. What is behind their doors may then be undecided.
     fn is_local(&self) -> bool {
@@ -215,6 +220,19 @@ impl Deref for Places {
 impl DerefMut for Places {
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.0
+    }
+}
+
+/// The place of a part that the robot picks up, or drops at a dart, by one of the actions that are possible.
+fn handled(
+    possible: &[AidAction],
+    action: AidAction,
+    here: Dart,
+) -> Result<Option<Dart>, RefusedAction> {
+    if possible.contains(&action) {
+        Ok((action == AidAction::Drop).then_some(here))
+    } else {
+        Err(action.refused())
     }
 }
 
@@ -403,6 +421,10 @@ macro_rules! dispatched {
                     marker => Marker::parts(marker, graph, facing),
                     aid => aid.parts(graph, facing)
                 )
+            }
+
+            fn is_seen_everywhere(&self, graph: &EmbeddedGraph) -> bool {
+                $with!(self, _marker => true, aid => aid.is_seen_everywhere(graph))
             }
 
             fn is_local(&self) -> bool {

@@ -1,7 +1,7 @@
 //! A directional marker that the robot can pick up, carry and drop. It points along the robot's entry dart when it is
 //! dropped, as the marker of Algorithm 1 does at the start (Section 2.3).
 
-use super::{Aid, AidAction, PlaceNames, Places, RefusedAction, State, are_in};
+use super::{Aid, AidAction, PlaceNames, Places, RefusedAction, State, are_in, handled};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     marker::{Directional, Marker, MarkerPart},
@@ -90,15 +90,7 @@ impl Aid for MovablePointer {
         state: &mut State<Places>,
         action: AidAction,
     ) -> Result<(), RefusedAction> {
-        let is_possible = self.actions(graph, state).contains(&action);
-        let place = match action {
-            AidAction::PickUp if is_possible => None,
-            AidAction::PickUp => return Err(RefusedAction::NothingToPickUp),
-            AidAction::Drop if is_possible => Some(state.pose),
-            AidAction::Drop => return Err(RefusedAction::NothingToDrop),
-            _ => return Err(action.refused()),
-        };
-        state.placed[0] = place;
+        state.placed[0] = handled(&self.actions(graph, state), action, state.pose)?;
         Ok(())
     }
 }

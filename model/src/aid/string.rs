@@ -6,7 +6,7 @@
 //! the end, it lies, and can be picked up again. At a vertex the robot sees the doors through which string runs, and
 //! which end is there. String is not cut: dropping the end for ever does what cutting it off does.
 
-use super::{Aid, AidAction, PlaceNames, Places, RefusedAction, State, are_in};
+use super::{Aid, AidAction, PlaceNames, Places, RefusedAction, State, are_in, handled};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     marker::MarkerPart,
@@ -127,6 +127,10 @@ impl Aid for LaidString {
             + &end.map_or_else(|| "+string".to_owned(), |end| format!("@{}", names.vertex(end)))
     }
 
+    fn is_seen_everywhere(&self, graph: &EmbeddedGraph) -> bool {
+        graph.vertices().all(|vertex| graph.degree(vertex) <= DoorSet::MOST)
+    }
+
     fn moves(&self) -> bool {
         true
     }
@@ -154,14 +158,8 @@ impl Aid for LaidString {
         state: &mut State<Places>,
         action: AidAction,
     ) -> Result<(), RefusedAction> {
-        let is_possible = self.actions(graph, state).contains(&action);
-        let end = match action {
-            AidAction::PickUp if is_possible => None,
-            AidAction::PickUp => return Err(RefusedAction::NothingToPickUp),
-            AidAction::Drop if is_possible => Some(self.first_alike(graph, state.pose)),
-            AidAction::Drop => return Err(RefusedAction::NothingToDrop),
-            _ => return Err(action.refused()),
-        };
+        let here = self.first_alike(graph, state.pose);
+        let end = handled(&self.actions(graph, state), action, here)?;
         if let Some(last) = state.placed.last_mut() {
             *last = end;
         }

@@ -2,8 +2,8 @@
 //! graphs" (1994). Here the graphs are undirected and embedded, and the robots sense more.
 //!
 //! All robots begin at the start vertex, with their backs to the facing door. The explorer moves, or sends another robot
-//! through a door; what that one perceives is told by radio. Robots that only talk where they meet learn the same,
-//! later: each can return the way it came, to where they began. Robots at one vertex see each other, and, if they show
+//! through a door, and knows at once what that one perceives, as by radio. Without radio, each can go back the way it came
+//! and talk where they meet: they know the same, only later. Robots at one vertex see each other, and, if they show
 //! it, along which door each stands, with its back to it.
 
 use super::{Aid, AidAction, PlaceNames, Places, RefusedAction, State, are_in};

@@ -17,7 +17,7 @@ use crate::{
     world::GraphWorld,
 };
 
-/// Two placed worlds, held against each other. Their states are numbered together in a `u32`, and take memory
+/// Two placed worlds that are compared. Their states are numbered together in a `u32`, and take memory
 /// accordingly.
 pub struct Comparison<'a> {
     worlds: [PlacedRobot<'a>; 2],

@@ -2,7 +2,7 @@
 //! the pairs of a [`Relation`](super::Relation) are quadratic.
 
 use super::space::{PlacedRobot, Space, StateLabel, States};
-use crate::aid::{Places, State};
+use crate::aid::{Aid, Places, State};
 
 /// A partition of the states of two worlds: states of one class are indistinguishable.
 #[derive(Clone, Debug)]
@@ -47,6 +47,9 @@ impl StateClasses {
         let mut first = 0;
         let mut starts = Vec::new();
         for (robot, known) in [one, other].into_iter().zip(&self.states) {
+            if !robot.aid().is_seen_everywhere(robot.graph()) {
+                return false;
+            }
             let Some(class) = self.class.get(first..first + known.len()) else { return false };
             let class_of = |state: &State<Places>| Some(class[known.number(state)? as usize]);
             // The states of the robot's own world, which may be others than those that are known.

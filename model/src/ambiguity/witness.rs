@@ -27,6 +27,9 @@ impl Relation {
     /// and can do the same; and whatever they do leads to another of the pairs.
     // paper: fig1.base, fig1.step, fig1.cases
     pub fn verify<'a>(&self, one: &PlacedRobot<'a>, other: &PlacedRobot<'a>) -> bool {
+        if [one, other].iter().any(|robot| !robot.aid().is_seen_everywhere(robot.graph())) {
+            return false;
+        }
         let mut pairs = self.0.clone();
         pairs.sort_unstable();
         let among = |here: &State<Places>, there: &State<Places>| {
