@@ -172,6 +172,8 @@ fn robots_of_a_team_see_each_other_at_a_vertex_and_learn_by_radio_where_others_a
     let graph = junction();
     let mut world = begin("team-2", &graph, 2);
     assert_eq!(world.sensed().sighting.to_string(), "robot 2 here along door 0");
+    // Through the other end of the loop: doors are counted clockwise.
+    assert_eq!(done(&mut world.clone(), "send-2:2"), ["robot 2 here along door 1"]);
     assert_eq!(
         done(&mut world, "send-2:1 send-2:1 1 1"),
         [
