@@ -14,7 +14,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     mapping::{MapWalk, MappingEvent, Observer, PartialMap},
-    percept::{Percept, Sighting},
+    percept::{OtherRobot, Percept, Sighting, TeamView},
 };
 
 use crate::{
@@ -65,6 +65,18 @@ pub struct Story {
     moves_not_printed: u64,
     /// The robot's moves up to the last line.
     moves: u64,
+    aid: StoryAid,
+}
+
+/// What the robot marks places with, if that moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum StoryAid {
+    Marker,
+    /// Several markers, or scouts.
+    Several(&'static str),
+    String,
+    /// One scout.
+    Scout,
 }
 
 impl Story {
@@ -78,7 +90,7 @@ impl Story {
     #[must_use]
     pub fn with_head(head: String) -> Self {
         let lines = vec![StoryLine { text: head, ..StoryLine::default() }];
-        Self { lines, round: 0, rejected: 0, moves_not_printed: 0, moves: 0 }
+        Self { lines, round: 0, rejected: 0, moves_not_printed: 0, moves: 0, aid: StoryAid::Marker }
     }
 
     /// The lines of a whole story, and the number of them after each number of steps.
@@ -105,11 +117,9 @@ impl Story {
         let map = journey.map();
         match event {
             MappingEvent::Started { percept } => {
-                let marker = match percept.sighting {
-                    Sighting::Pointing(_) => "It puts its marker down here",
-                    _ => "Its marker lies here",
-                };
-                let text = format!("{marker}, at vertex v0 of the map. It senses {percept}.");
+                let (aid, at_start) = at_start(percept.sighting);
+                self.aid = aid;
+                let text = format!("{at_start}, at vertex v0 of the map. It senses {percept}.");
                 self.add_paragraph(text);
             }
             MappingEvent::Moved { .. } => {}
@@ -152,8 +162,20 @@ impl Story {
 
     /// A round begins: the robot has followed an unexplored dart.
     fn add_round(&mut self, journey: &MapWalk, edge: Dart, with: &str, percept: Percept) {
+        self.add_round_of(journey, "the robot", edge, with, percept);
+    }
+
+    /// A round begins with this robot.
+    fn add_round_of(
+        &mut self,
+        journey: &MapWalk,
+        robot: &str,
+        edge: Dart,
+        with: &str,
+        percept: Percept,
+    ) {
         let (edge, moves) = (dart(journey.map(), edge), self.take_moves(journey));
-        self.begin_round(format!("the robot takes {edge}{with}{moves} and senses {percept}."));
+        self.begin_round(format!("{robot} takes {edge}{with}{moves} and senses {percept}."));
     }
 
     fn begin_round(&mut self, text: String) {
@@ -279,6 +301,22 @@ pub fn head(world: &NamedWorld, facing: Dart) -> String {
         Some(_) => format!("the door of edge {behind}"),
     };
     format!("World {name}. The robot starts at {at}, with its back to {behind}.")
+}
+
+/// What the robot has at its start, and where that is, in words.
+fn at_start(sighting: Sighting) -> (StoryAid, &'static str) {
+    match sighting {
+        Sighting::Pointing(_) => (StoryAid::Marker, "It puts its marker down here"),
+        Sighting::Lying(2..) | Sighting::These(_) => {
+            (StoryAid::Several("marker"), "Its markers lie here")
+        }
+        Sighting::String(_) => (StoryAid::String, "The fixed end of its string is here"),
+        Sighting::Team(TeamView([_, OtherRobot::Absent])) => {
+            (StoryAid::Scout, "The other robot is here, too")
+        }
+        Sighting::Team(_) => (StoryAid::Several("robot"), "The other robots are here, too"),
+        _ => (StoryAid::Marker, "Its marker lies here"),
+    }
 }
 
 /// A number of moves in parentheses, unless it is zero.

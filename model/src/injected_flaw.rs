@@ -1,4 +1,4 @@
-//! Flaws that a test puts into folding and into the folding explorer, to see that the check reports them.
+//! Flaws that a test puts into folding and into explorers, to see that the check reports them.
 //!
 //! Outside of this crate's tests none is present, and the compiler removes the conditions.
 
@@ -15,6 +15,20 @@ pub(crate) enum InjectedFlaw {
     NotTested,
     /// A walk that does not confirm a hypothesis is made, and its success is taken as proof.
     ProofByOtherWalk,
+    /// There is no place validation: every place is new.
+    EveryPlaceIsNew,
+    /// The search ends at the first candidate.
+    OneCandidateSearched,
+    /// After a search in vain, the robot takes itself to be at the new place.
+    LeftBehind,
+    /// After a search in vain, the marker is left at the new place.
+    MarkerLeftBehind,
+    /// There is no back-link validation: the first unexplored dart is taken.
+    FirstDartIsIt,
+    /// The marker is dropped where it was found, and not carried to the known end.
+    NotCarried,
+    /// The first dart tried that does not lead to the marker is taken.
+    RejectedIsConfirmed,
 }
 
 impl InjectedFlaw {

@@ -4,6 +4,7 @@
 use std::ops::RangeInclusive;
 
 use toposlam_model::{
+    aid::markers::MOVABLE,
     check::{Check, DEFAULT_STATE_BUDGET, RunChoices, Shard, Tally, every_way},
     embedded_graph::Dart,
     enumerate::Class,
@@ -72,7 +73,7 @@ fn own_starts() -> Vec<String> {
             world.graph.vertex_count(),
             world.graph.edge_count(),
             one as f64 / certificate as f64,
-            moves(MappingAlgorithm::MovableMarker, &world, facing),
+            moves(MappingAlgorithm::MovableMarkers(MOVABLE), &world, facing),
         )
     });
     rows.collect()
@@ -103,7 +104,7 @@ fn cells(tally: &Tally, total: u64, most: u64) -> String {
 fn every_start(class: Class, up_to: usize) -> Vec<String> {
     let rows = (1..=up_to).map(|edges| {
         let one = tally(class, edges, MappingAlgorithm::Algorithm1);
-        let other = tally(class, edges, MappingAlgorithm::MovableMarker);
+        let other = tally(class, edges, MappingAlgorithm::MovableMarkers(MOVABLE));
         let certificate = cells(&one, one.certificate_total, one.certificate_max);
         let starts = one.starts;
         let ratio = one.moves_total as f64 / one.certificate_total as f64;

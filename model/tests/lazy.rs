@@ -10,6 +10,7 @@ use std::{
 };
 
 use toposlam_model::{
+    aid::markers::MOVABLE,
     check::{EnumeratedStart, FinishedUnits, PartTally, Shard, SharedPrefixCheck, Tally},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Watch},
@@ -193,7 +194,7 @@ fn the_pieces_in_any_order_are_the_whole() {
     let cases = [
         (MappingAlgorithm::Algorithm1, Class::Multigraph, 5),
         (MappingAlgorithm::Folding, Class::Planar, 6),
-        (MappingAlgorithm::MovableMarker, Class::Corridor, 7),
+        (MappingAlgorithm::MovableMarkers(MOVABLE), Class::Corridor, 7),
     ];
     for (algorithm, class, edges) in cases {
         let sweep = SharedPrefixCheck::new(class, edges, Shard::WHOLE).unwrap();

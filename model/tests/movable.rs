@@ -2,7 +2,7 @@
 //! that a second implementation has, too; and with loops or parallel edges it does not.
 
 use toposlam_model::{
-    aid::markers::MOVABLE,
+    aid::{AidKind, markers::MOVABLE},
     ambiguity::Comparison,
     check::judge,
     embedded_graph::{Dart, EmbeddedGraph},
@@ -39,7 +39,7 @@ fn every_start_of_every_small_simple_world_is_mapped_right() {
 /// The moves of a run. At its end the robot carries the marker.
 fn moves(graph: &EmbeddedGraph, facing: Dart) -> u64 {
     let mut run = MovableMarkerRun::new(graph.dart_count());
-    let mut world = GraphWorld::with_aid(graph, MOVABLE, facing);
+    let mut world = GraphWorld::with_aid(graph, AidKind::Markers(MOVABLE), facing);
     explore(&mut run, &mut world).unwrap();
     assert_eq!(world.held(), 1);
     run.moves()
@@ -71,7 +71,7 @@ fn a_cycle_of_m_edges_costs_m_squared_plus_m_minus_6() {
 
 #[test]
 fn the_bound_is_the_stated_one() {
-    let bound = |m, n| MappingAlgorithm::MovableMarker.move_bound(m, n);
+    let bound = |m, n| MappingAlgorithm::MovableMarkers(MOVABLE).move_bound(m, n);
     assert_eq!(bound(1, 2), 3);
     assert_eq!(bound(3, 3), 9 + (18 - 7));
     assert_eq!(bound(6, 4), 18 + 3 * (24 - 7));
@@ -94,7 +94,7 @@ enum End {
 
 fn end(graph: &EmbeddedGraph, facing: Dart) -> End {
     let mut search = MovableMarkerRun::new(10 * graph.dart_count());
-    let mut world = GraphWorld::with_aid(graph, MOVABLE, facing);
+    let mut world = GraphWorld::with_aid(graph, AidKind::Markers(MOVABLE), facing);
     let mut candidate = Candidate::default();
     let run = explore(&mut search, &mut world);
     let judged = run

@@ -86,7 +86,7 @@ impl<W> Observer<W> for Recorder {
     }
 }
 
-/// Maps a world with an algorithm: "algorithm1", "folding" or "movable".
+/// Maps a world with an algorithm: "algorithm1", "folding", or the name of a marking aid that moves.
 #[pyfunction]
 pub(crate) fn explore(
     py: Python<'_>,
@@ -96,15 +96,15 @@ pub(crate) fn explore(
     max_darts: usize,
 ) -> PyResult<Explored> {
     let (world, facing) = (&world.0, world.dart(py, facing)?);
-    let Some(&algorithm) = MappingAlgorithm::ALL.iter().find(|known| known.name() == algorithm)
-    else {
-        let text = format!(
-            "`{algorithm}` is not an algorithm; the algorithms are algorithm1, folding and movable"
-        );
+    let Some(algorithm) = MappingAlgorithm::all().find(|known| known.name() == algorithm) else {
+        let names: Vec<_> = MappingAlgorithm::all().map(MappingAlgorithm::name).collect();
+        let names = names.join(", ");
+        let text = format!("`{algorithm}` is not an algorithm; the algorithms are {names}");
         return Err(error(py, "UnknownAlgorithmError", text));
     };
-    if algorithm == MappingAlgorithm::MovableMarker && !world.graph.is_simple() {
-        let text = "the movable marker algorithm needs a world without loops and parallel edges";
+    if algorithm.needs_simple() && !world.graph.is_simple() {
+        let text =
+            format!("the algorithm {algorithm} needs a world without loops and parallel edges");
         return Err(error(py, "NotSimpleError", text));
     }
     let (mapped, journey, recorder) = run_watched(py, None, None, |watcher| {

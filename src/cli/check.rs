@@ -35,7 +35,7 @@ use super::{
     explorer::{ExplorerCommand, ExplorerOptions},
     input,
     mapping_marker::{
-        algorithm_for, check_worlds, is_directional, marker_kind, movable_not_sufficient,
+        algorithm_for, check_worlds, is_directional, marker_kind, needs_simple, not_sufficient,
     },
     method_options::algorithms,
     output,
@@ -272,7 +272,7 @@ impl CheckArguments {
             let (limits, marker) = (self.explorer.limits(), self.marker);
             Mapper::Explorer(ExplorerSweep { command, limits, marker, most_kept })
         } else {
-            let algorithm = algorithm_for(self.algorithm, self.marker, self.choices)?;
+            let algorithm = algorithm_for(self.algorithm, self.marker)?;
             Mapper::Algorithm(algorithm, self.choices)
         };
         let work = match &self.from {
@@ -471,7 +471,7 @@ impl CheckArguments {
 
     /// Connects to the other processes, if there are others.
     fn join_cluster(&self) -> Result<Option<Box<dyn ClusterSession>>, CliError> {
-        let algorithm = algorithm_for(self.algorithm, self.marker, RunChoices::Default);
+        let algorithm = algorithm_for(self.algorithm, self.marker);
         let settings = [
             ("the command", "check".to_owned()),
             ("the class", self.class().name().to_owned()),
@@ -586,7 +586,7 @@ impl CheckArguments {
     }
 
     fn class(&self) -> Class {
-        let usual = if self.marker.moves() { Class::Simple } else { Class::Multigraph };
+        let usual = if needs_simple(self.marker) { Class::Simple } else { Class::Multigraph };
         self.class.unwrap_or(usual)
     }
 
@@ -612,8 +612,8 @@ impl CheckArguments {
             _ if self.explorer.explorer.is_some() => {
                 Enumeration::new(Each::World, class, edges).map(Work::Enumerated)
             }
-            _ if self.marker.moves() && !class.is_simple() => {
-                let cause = movable_not_sufficient(format!("class {class}"));
+            _ if needs_simple(self.marker) && !class.is_simple() => {
+                let cause = not_sufficient(self.marker, format!("class {class}"));
                 return Err(CliError::at("--class", cause));
             }
             RunChoices::Default => SharedPrefixCheck::new(class, edges, self.shard)

@@ -170,7 +170,7 @@ impl ExploreArguments {
         check_worlds(self.marker, &self.world, std::slice::from_ref(&world.graph))?;
         let facing = input::start_of(&world, self.start.as_deref())?;
         self.check_outputs(&world)?;
-        let algorithm = algorithm_for(self.algorithm, self.marker, self.choices)?;
+        let algorithm = algorithm_for(self.algorithm, self.marker)?;
         self.explore(algorithm, &world, facing, out)
     }
 

@@ -9,17 +9,19 @@ use toposlam_model::{
     marker::Directional,
 };
 
-use super::{CliError, RunChoices};
+use super::CliError;
 
-/// Parses the name of a marker that an algorithm maps with.
+/// Parses the name of an aid that an algorithm maps with.
 pub(super) fn mapping_marker(name: &str) -> Result<AidKind, String> {
-    let mut markers = MappingAlgorithm::ALL.iter().map(|algorithm| algorithm.aid());
-    markers
-        .find(|marker| marker.name() == name)
-        .ok_or_else(|| format!("no algorithm maps with `{name}`; choose directional or movable"))
+    let mut aids = MappingAlgorithm::all().map(MappingAlgorithm::aid);
+    aids.find(|aid| aid.name() == name).ok_or_else(|| {
+        let mut names: Vec<_> = MappingAlgorithm::all().map(|known| known.aid().name()).collect();
+        names.dedup();
+        format!("no algorithm maps with `{name}`; choose one of {}", names.join(", "))
+    })
 }
 
-/// Parses the name of a kind of marker. For a name that no marker has, the error lists those of the algorithms.
+/// Parses the name of a marking aid. For a name that none has, the error lists those of the algorithms.
 pub(super) fn marker_kind(name: &str) -> Result<AidKind, String> {
     aid::named(name).or_else(|_| mapping_marker(name))
 }
@@ -29,16 +31,20 @@ pub(super) fn is_directional(marker: AidKind) -> bool {
     marker.name() == Directional.name()
 }
 
-/// The algorithm that maps with a marker, if this one is asked for.
+/// Whether the aid suffices only for worlds without loops and parallel edges.
+pub(super) fn needs_simple(aid: AidKind) -> bool {
+    MappingAlgorithm::all().any(|known| known.aid() == aid && known.needs_simple())
+}
+
+/// The algorithm that maps with an aid, if this one is asked for.
 ///
 /// # Errors
-/// Returns an error if the algorithm needs another marker, or cannot make all choices.
+/// Returns an error if the algorithm needs another aid.
 pub(super) fn algorithm_for(
     asked: MappingAlgorithm,
     marker: AidKind,
-    choices: RunChoices,
 ) -> Result<MappingAlgorithm, CliError> {
-    let mut known = [asked].into_iter().chain(MappingAlgorithm::ALL.iter().copied());
+    let mut known = [asked].into_iter().chain(MappingAlgorithm::all());
     let found = known.find(|algorithm| algorithm.aid().name() == marker.name());
     let cause = || mapping_marker(marker.name()).err().unwrap_or_default();
     let found = found.ok_or_else(|| CliError::at("--marker", cause()))?;
@@ -46,36 +52,34 @@ pub(super) fn algorithm_for(
         let cause = format!("{} maps with --marker {}", asked.in_words(), asked.aid().name());
         return Err(CliError::at("--algorithm", cause));
     }
-    if choices != RunChoices::Default && !is_directional(marker) {
-        return Err(CliError::at("--choices", "`all` needs --marker directional"));
-    }
     Ok(found)
 }
 
-/// Checks that the marker suffices for every world of a file.
+/// Checks that the aid suffices for every world of a file.
 ///
 /// # Errors
-/// Returns an error if the marker is movable and a world has loops or parallel edges.
+/// Returns an error if it suffices only for worlds without loops and parallel edges, and a world has them.
 pub(super) fn check_worlds(
     marker: AidKind,
     path: &Path,
     graphs: &[EmbeddedGraph],
 ) -> Result<(), CliError> {
     match graphs.iter().position(|graph| !graph.is_simple()) {
-        Some(index) if marker.moves() => {
+        Some(index) if needs_simple(marker) => {
             let world = format!("world {}", index + 1);
-            Err(CliError::in_file(path, movable_not_sufficient(world)))
+            Err(CliError::in_file(path, not_sufficient(marker, world)))
         }
         _ => Ok(()),
     }
 }
 
-/// The error for a world, or a class of worlds, that one movable marker cannot map, with the smallest pair that
+/// The error for a world, or a class of worlds, that cannot be mapped with an aid, with the smallest pair that
 /// the search finds.
-pub(super) fn movable_not_sufficient(what: impl Display) -> String {
+pub(super) fn not_sufficient(aid: AidKind, what: impl Display) -> String {
+    let name = aid.name();
     format!(
-        "{what} has loops or parallel edges, and one movable marker does not suffice for them: no \
+        "{what} has loops or parallel edges, and the marking aid {name} does not suffice for them: no \
          walk distinguishes [v0 = e0 e0 e1 e1] and [v0 = e0 e1 e0 e1] (see toposlam counterexample \
-         --marker movable --class multigraph)"
+         --aid {name} --class multigraph)"
     )
 }

@@ -91,7 +91,7 @@ impl MethodOptions {
         match (self.safeguards.recover, self.algorithm) {
             (false, algorithm) => Ok(self.safeguards.by(algorithm)),
             (true, MappingAlgorithm::Folding) => Ok(self.safeguards.folding()),
-            (true, MappingAlgorithm::Algorithm1 | MappingAlgorithm::MovableMarker) => {
+            (true, _) => {
                 let cause = "only the folding explorer recovers; use --algorithm folding";
                 Err(CliError::at("--recover", cause))
             }

@@ -123,3 +123,33 @@ impl Totals {
         totals
     }
 }
+pub(crate) fn aids() {
+    use toposlam_model::mapping::{TeamRun, ThreadRun, explore};
+    for junctions in [25, 50, 100, 200] {
+        for algorithm in MappingAlgorithm::all() {
+            let mut random = Random(7);
+            let (mut total, mut worst) = (0, 0);
+            for _ in 0..BUILDINGS {
+                let graph = building(junctions, MORE_HALLWAYS, &mut random);
+                let mut world = GraphWorld::with_aid(&graph, algorithm.aid(), Dart(0));
+                let (run, mapped) = algorithm.map_world(&mut world, DEFAULT_DART_BOUND, &mut ());
+                mapped.unwrap();
+                let map = Cow::Borrowed(run.map().complete().unwrap());
+                let map = ExploredMap { graph: map, facing: FACING, pose: run.robot() };
+                judge_map(&map, (&graph, Dart(0)), world.pose(), &mut Candidate::default())
+                    .unwrap();
+                assert_eq!(run.moves(), world.moves(), "{}", algorithm.name());
+                assert!(
+                    world.moves() <= algorithm.move_bound(graph.edge_count(), graph.vertex_count())
+                );
+                total += world.moves();
+                worst = worst.max(world.moves());
+            }
+            println!(
+                "{junctions:>4} {:<20} {:>8.1} {worst}",
+                algorithm.name(),
+                total as f64 / BUILDINGS as f64
+            );
+        }
+    }
+}

@@ -12,7 +12,7 @@ use crate::{
 
 /// So many markers. The place of each is the first dart of its vertex, or none while the robot carries it; the places of
 /// markers that look alike are in order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MovableMarkers {
     /// Their number, from 1 to 4.
     count: u8,
@@ -29,6 +29,14 @@ impl MovableMarkers {
 
     pub(super) const fn distinct(count: u8) -> Self {
         Self { count, are_alike: false }
+    }
+
+    pub fn count(self) -> u8 {
+        self.count
+    }
+
+    pub fn are_alike(self) -> bool {
+        self.are_alike
     }
 
     const fn texts(self) -> [&'static str; 2] {

@@ -278,7 +278,8 @@ macro_rules! with_any_aid {
     };
 }
 
-/// The fixed markers, and then the aids that move.
+/// The fixed markers, and then the aids that move. Each has finitely many states in a graph, so all of them can be
+/// searched; [a string as long as it takes](LaidString::of_any_length) has not, and is not among them.
 pub const AIDS: [AidKind; 22] = [
     AidKind::Fixed(MarkerKind::NoMarker),
     AidKind::Fixed(MarkerKind::Undirected),

@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// The directional marker that can be carried. Its place is the dart along which it points, or none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MovablePointer;
 
 impl MovablePointer {

@@ -16,15 +16,25 @@ use crate::{
 /// A string of some length. Its places are: the fixed end, as the first dart of the start vertex; the darts by which
 /// the string leaves each vertex on its way; and the vertex of its free end, as its first dart, or none while the robot
 /// holds it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LaidString {
-    /// In edges, from 1 to 3.
-    length: u8,
+    /// In edges, from 1 to 3; none if it is as long as it takes.
+    length: Option<u8>,
 }
 
 impl LaidString {
     pub(super) const fn of(length: u8) -> Self {
-        Self { length }
+        Self { length: Some(length) }
+    }
+
+    /// A string as long as it takes.
+    pub const fn of_any_length() -> Self {
+        Self { length: None }
+    }
+
+    /// Its length in edges; none if it is as long as it takes.
+    pub fn length(self) -> Option<usize> {
+        self.length.map(usize::from)
     }
 
     /// The darts by which it leaves each vertex on its way.
@@ -53,23 +63,28 @@ impl Aid for LaidString {
 
     fn name(&self) -> &'static str {
         match self.length {
-            1 => "string-1",
-            2 => "string-2",
-            _ => "string-3",
+            None => "string",
+            Some(1) => "string-1",
+            Some(2) => "string-2",
+            Some(_) => "string-3",
         }
     }
 
     fn about(&self) -> &'static str {
         match self.length {
-            1 => {
+            None => {
+                "a string as long as it takes, fixed at the start vertex, that the robot pays out, winds in, drops and \
+                 picks up: through which doors does it run, and which end is here?"
+            }
+            Some(1) => {
                 "a string as long as one edge, fixed at the start vertex, that the robot pays out, winds in, drops and \
                  picks up: through which doors does it run, and which end is here?"
             }
-            2 => {
+            Some(2) => {
                 "a string as long as two edges, fixed at the start vertex, that the robot pays out, winds in, drops and \
                  picks up: through which doors does it run, and which end is here?"
             }
-            _ => {
+            Some(_) => {
                 "a string as long as three edges, fixed at the start vertex, that the robot pays out, winds in, drops \
                  and picks up: through which doors does it run, and which end is here?"
             }
@@ -81,7 +96,7 @@ impl Aid for LaidString {
     }
 
     fn exists(&self, graph: &EmbeddedGraph, placed: &Places) -> bool {
-        are_in(placed, graph, 2..=2 + usize::from(self.length))
+        are_in(placed, graph, 2..=self.length().map_or(usize::MAX, |length| 2 + length))
     }
 
     fn sighting(&self, graph: &EmbeddedGraph, state: &State<Places>) -> Sighting {
@@ -141,7 +156,7 @@ impl Aid for LaidString {
             return 0;
         }
         let laid = Self::way(&state.placed).count() as u32;
-        1 + u32::from(self.length).saturating_sub(laid)
+        1 + self.length.map_or(0, |length| u32::from(length).saturating_sub(laid))
     }
 
     fn actions(&self, graph: &EmbeddedGraph, state: &State<Places>) -> Vec<AidAction> {
@@ -187,7 +202,7 @@ impl Aid for LaidString {
             return Err(RefusedAction::TooManyDoors { most: DoorSet::MOST });
         }
         let laid = Self::way(placed).count();
-        if laid >= usize::from(self.length) {
+        if self.length().is_some_and(|length| laid >= length) {
             return Err(RefusedAction::StringTooShort);
         }
         let end = placed.len() - 1;

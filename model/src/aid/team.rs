@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Two or three robots. Places are the poses of those beside the explorer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Team {
     /// Their number, from 2 to 3.
     robots: u8,
@@ -22,8 +22,16 @@ pub struct Team {
 }
 
 impl Team {
-    pub(super) const fn of(robots: u8, shows_heading: bool) -> Self {
+    pub(crate) const fn of(robots: u8, shows_heading: bool) -> Self {
         Self { robots, shows_heading }
+    }
+
+    pub fn robots(self) -> u8 {
+        self.robots
+    }
+
+    pub fn shows_heading(self) -> bool {
+        self.shows_heading
     }
 
     /// The door along which a robot stands, as another one at its vertex counts, if that is shown.

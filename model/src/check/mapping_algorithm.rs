@@ -37,7 +37,7 @@ impl MappingAlgorithm {
     }
 
     pub fn sweep(self, sweep: &Check, choices: RunChoices, watch: &dyn Watch) -> Tally {
-        with_explorer!(self, E => sweep.run(E::default, choices, watch))
+        with_explorer!(self, new => sweep.run(new, choices, watch))
     }
 
     pub fn lazy_sweep(
@@ -46,23 +46,23 @@ impl MappingAlgorithm {
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
     ) -> Tally {
-        with_explorer!(self, E => sweep.resume(E::default, units, watch))
+        with_explorer!(self, new => sweep.resume(new, units, watch))
     }
 
     pub fn pieces(self, sweep: &SharedPrefixCheck, watch: &dyn Watch) -> CheckPieces {
-        with_explorer!(self, E => CheckPieces::new(sweep, E::default, watch))
+        with_explorer!(self, new => CheckPieces::new(sweep, new, watch))
     }
 
     pub fn check_piece(self, of: &CheckPieces, piece: usize, watch: &dyn Watch) -> PartTally {
-        with_explorer!(self, E => of.check(piece, E::default(), watch))
+        with_explorer!(self, new => of.check(piece, new(), watch))
     }
 
     pub fn finished_pieces(self, counts: PartTally) -> Tally {
-        with_explorer!(self, E => CheckPieces::finished(counts, E::default))
+        with_explorer!(self, new => CheckPieces::finished(counts, new))
     }
 
     pub fn probe(self, sweep: &SharedPrefixCheck, numbers: Vec<u64>, watch: &dyn Watch) -> Probe {
-        with_explorer!(self, E => sweep.probe(E::default(), numbers, watch))
+        with_explorer!(self, new => sweep.probe(new(), numbers, watch))
     }
 
     pub fn check_worlds(
@@ -71,7 +71,7 @@ impl MappingAlgorithm {
         choices: RunChoices,
         watch: &dyn Watch,
     ) -> Tally {
-        with_explorer!(self, E => check_worlds(worlds, E::default, choices, watch))
+        with_explorer!(self, new => check_worlds(worlds, new, choices, watch))
     }
 
     /// Makes and judges the runs with other than the default choices, as [`RunChoices::others`].
@@ -84,6 +84,6 @@ impl MappingAlgorithm {
         (graph, facing): (&EmbeddedGraph, Dart),
         watch: &dyn Watch,
     ) -> Result<Option<EveryWay>, Flaw> {
-        with_explorer!(self, E => choices.others(E::default, graph, facing, watch))
+        with_explorer!(self, new => choices.others(new, graph, facing, watch))
     }
 }

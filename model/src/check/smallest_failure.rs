@@ -1,7 +1,17 @@
 //! The smallest start on which a broken variant of an algorithm fails.
 
-use super::{Check, FailedStart, RunChoices, Shard};
-use crate::{enumerate::Class, isomorphism::code, mapping::Explorer};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::{Check, FailedStart, RunChoices, Shard, judge};
+use crate::{
+    any_graph::starts,
+    embedded_graph::Dart,
+    enumerate::Class,
+    injected_flaw::{InjectedFlaw, inject},
+    isomorphism::{Candidate, code},
+    mapping::{Explorer, Flaw, explore},
+    world::GraphWorld,
+};
 
 /// The edges of a start, its code, and what went wrong there.
 pub(crate) type Failure = (usize, Vec<u32>, String);
@@ -23,6 +33,34 @@ pub(crate) fn smallest_failure<E: Explorer>(
         Some((edges, words, format!("{step}: {flaw}")))
     });
     failure.expect("the check catches it")
+}
+
+/// The first start of a class with up to so many edges on which an explorer fails with an injected flaw.
+pub(crate) fn injected_failure<E: Explorer>(
+    flaw: Option<InjectedFlaw>,
+    mut explorer: E,
+    class: Class,
+    most: usize,
+) -> Option<Failure> {
+    let mut candidate = Candidate::default();
+    let mut fails = || {
+        (1..=most).flat_map(|edges| starts(class, edges)).find_map(|graph| {
+            // With a flaw, what the code relies on may be false. Overflows panic in tests.
+            let judged = catch_unwind(AssertUnwindSafe(|| {
+                let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
+                // The map may have more darts than the world.
+                let world = GraphWorld::with_aid(&graph, explorer.aid(), Dart(0));
+                let mut world = world.with_bound(bound);
+                let ended = explore(&mut explorer, &mut world).map_err(Flaw::from);
+                let judged = ended
+                    .and_then(|()| judge(&explorer, Dart(0), &world, &mut candidate).map(|_| ()));
+                judged.map_err(|flaw| format!("after {} moves: {flaw}", world.moves()))
+            }));
+            let report = judged.unwrap_or_else(|_| Err("it panics".to_owned())).err()?;
+            Some((graph.edge_count(), code(&graph, Dart(0)).words().to_vec(), report))
+        })
+    };
+    inject(flaw, &mut fails)
 }
 
 /// The word of a code for a new vertex. The word for an edge to a known vertex is the number of a dart.

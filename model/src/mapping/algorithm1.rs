@@ -66,12 +66,14 @@ impl Explorer for Algorithm1Run {
     type Aid = MarkerKind;
     type Choice = MappingChoice;
 
-    const INFO: ExplorerInfo = ExplorerInfo {
-        option: "algorithm1",
-        title: "Algorithm 1",
-        in_words: "Algorithm 1",
-        order: CostOrder::EdgesSquaredVertices,
-    };
+    fn info(&self) -> ExplorerInfo {
+        ExplorerInfo {
+            option: "algorithm1",
+            title: "Algorithm 1",
+            in_words: "Algorithm 1",
+            order: CostOrder::EdgesSquaredVertices,
+        }
+    }
 
     fn aid(&self) -> MarkerKind {
         Directional

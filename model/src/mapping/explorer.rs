@@ -34,12 +34,14 @@ pub trait Explorer: Clone {
     type Choice: Copy + fmt::Debug + PartialEq;
 
     /// Its names, and the order of its cost.
-    const INFO: ExplorerInfo = ExplorerInfo {
-        option: "explorer",
-        title: "Explorer",
-        in_words: "the explorer",
-        order: CostOrder::EdgesSquaredVertices,
-    };
+    fn info(&self) -> ExplorerInfo {
+        ExplorerInfo {
+            option: "explorer",
+            title: "Explorer",
+            in_words: "the explorer",
+            order: CostOrder::EdgesSquaredVertices,
+        }
+    }
 
     fn aid(&self) -> Self::Aid;
 

@@ -196,16 +196,26 @@ impl MapWalk {
     /// discovered first; then with the lowest index. `None` if everything is explored.
     // paper: cost.cycle, cost.chain
     pub(super) fn nearest_unexplored(&mut self) -> Option<Dart> {
+        self.nearest_unexplored_from(self.robot, |_| true)
+    }
+
+    /// Of the unexplored darts that are open, the one that is fewest hops from a pose, as in
+    /// [`nearest_unexplored`](Self::nearest_unexplored).
+    pub(super) fn nearest_unexplored_from(
+        &mut self,
+        pose: Dart,
+        is_open: impl Fn(Dart) -> bool,
+    ) -> Option<Dart> {
         if self.map.unexplored_is_empty() {
             return None;
         }
-        let here = self.map.vertex(self.robot);
+        let here = self.map.vertex(pose);
         // Often it is at the robot's own vertex, and no tree is needed.
-        if self.map.is_frontier(here) {
-            return self.map.unexplored_at(here).next();
+        if let Some(dart) = self.map.unexplored_at(here).find(|dart| is_open(*dart)) {
+            return Some(dart);
         }
         self.from_robot.grow_from(&self.map, here);
-        self.from_robot.nearest_unexplored(&self.map)
+        self.from_robot.nearest_unexplored(&self.map, is_open)
     }
 
     /// Goes through the known map to the known end of an unexplored edge, and follows it to its
@@ -259,9 +269,19 @@ impl MapWalk {
 
     /// The darts of a shortest path from the robot's vertex to a known one.
     pub(super) fn way_to(&mut self, target: Vertex) -> Vec<Dart> {
-        let mut way = mem::take(&mut self.way);
+        let way = mem::take(&mut self.way);
+        self.way_between(self.robot, target, way)
+    }
+
+    /// The darts of a shortest path from the vertex of a pose to a known one, written over another one.
+    pub(super) fn way_between(
+        &mut self,
+        pose: Dart,
+        target: Vertex,
+        mut way: Vec<Dart>,
+    ) -> Vec<Dart> {
         way.clear();
-        let here = self.map.vertex(self.robot);
+        let here = self.map.vertex(pose);
         if here != target {
             self.from_robot.grow_from_unless_rooted(&self.map, here);
             self.from_robot.path_from_root(&self.map, target, &mut way);
@@ -343,14 +363,30 @@ impl MapWalk {
         world: &mut W,
     ) -> Mapped<W, Vertex> {
         let edge = self.edge.ok_or(InvalidStep::NoEdge)?;
-        self.check_bound(self.arrival.degree)?;
+        let vertex = self.add_vertex(edge, self.arrival.degree)?;
         self.edge = None;
-        self.from_robot.clear();
-        let vertex = self.map.add_vertex(self.arrival.degree);
-        let first = self.map.first_dart(vertex);
-        self.map.join(edge, first);
-        self.robot = Dart(first.0 + entry.0);
+        self.robot = Dart(self.map.first_dart(vertex).0 + entry.0);
         world.event(self, MappingEvent::VertexAdded { edge, vertex });
+        Ok(vertex)
+    }
+
+    /// An unexplored edge leads to a new vertex. The robot is elsewhere.
+    pub(super) fn add_place_behind<W: ObservedWorld>(
+        &mut self,
+        edge: Dart,
+        degree: u32,
+        world: &mut W,
+    ) -> Mapped<W, Vertex> {
+        let vertex = self.add_vertex(edge, degree)?;
+        world.event(self, MappingEvent::VertexAdded { edge, vertex });
+        Ok(vertex)
+    }
+
+    fn add_vertex<E>(&mut self, edge: Dart, degree: u32) -> Result<Vertex, MappingError<E>> {
+        self.check_bound(degree)?;
+        self.from_robot.clear();
+        let vertex = self.map.add_vertex(degree);
+        self.map.join(edge, self.map.first_dart(vertex));
         Ok(vertex)
     }
 

@@ -28,7 +28,7 @@ pub enum MappingEvent {
     LoopClosed { edge: Dart, other: Dart },
     /// Lines 21 to 23: a vertex was added, with the edge that leads to it.
     VertexAdded { edge: Dart, vertex: Vertex },
-    /// Of the movable marker algorithm.
+    /// Of an explorer whose marking aid moves.
     Movable(MovableEvent),
     /// Of the folding explorer.
     Folding(FoldingEvent),
@@ -52,44 +52,30 @@ impl MappingEvent {
     pub fn action(self) -> Option<Action> {
         match self {
             Self::Moved { door, .. } => Some(Action::Take(door)),
-            Self::Movable(MovableEvent::PickedUp) => Some(Action::Do(AidAction::PickUp)),
-            Self::Movable(MovableEvent::Dropped) => Some(Action::Do(AidAction::Drop)),
+            Self::Movable(MovableEvent::Did(action)) => Some(Action::Do(action)),
             _ => None,
         }
     }
 }
 
-/// An event that only runs with a movable marker have.
+/// An event that only runs with a marking aid that moves have: markers, a string, or scouts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovableEvent {
-    /// The robot is at the unknown end of an edge and carries the marker. This number of known vertices may be the
-    /// place.
-    Arrived {
-        edge: Dart,
-        percept: Percept,
-        candidates: usize,
-    },
-    Dropped,
-    PickedUp,
-    /// Place validation: the marker is not at this candidate, where the robot is.
-    NotAt {
-        vertex: Vertex,
-    },
-    /// Place validation: the marker lies at a known vertex, where the robot is.
-    Found {
-        vertex: Vertex,
-    },
-    /// Place validation: the marker is at no known vertex.
+    /// The robot is at the unknown end of an edge with the markers or the string, or a scout is there. This number of known
+    /// vertices may be the place; with a string, of unexplored darts.
+    Arrived { edge: Dart, percept: Percept, candidates: usize },
+    /// The robot has done something with the aid.
+    Did(AidAction),
+    /// Place validation: the marker or scout is not at this candidate, where the robot is.
+    NotAt { vertex: Vertex },
+    /// Place validation: the marker or scout is at a known vertex, where the robot is.
+    Found { vertex: Vertex },
+    /// Place validation: the marker or scout is at no known vertex.
     NotFound,
-    /// Back-link validation: the marker is not behind this unexplored dart, and the robot is back.
-    NotBehind {
-        dart: Dart,
-        percept: Percept,
-    },
-    /// Back-link validation: the marker is behind this unexplored dart, and the robot is there.
-    Behind {
-        dart: Dart,
-    },
+    /// Back-link validation: the marker or scout is not behind this unexplored dart, and the robot is back.
+    NotBehind { dart: Dart, percept: Percept },
+    /// Back-link validation: the marker or scout is behind this unexplored dart, and the robot is there.
+    Behind { dart: Dart },
 }
 
 /// An event that only runs of the folding explorer have. A hypothesis is that the place behind `edge` is entered by a

@@ -1,5 +1,5 @@
-//! Mapping a world with markers: Algorithm 1, the movable marker algorithm, and their parts.
-//! Section 2.3.
+//! Mapping a world with a marking aid: Algorithm 1, the folding explorer, the explorers with markers, strings and robots
+//! that move, and their parts. Section 2.3.
 
 mod algorithm1;
 pub(crate) mod audit;
@@ -11,8 +11,11 @@ mod map_walk;
 mod mapping_algorithm;
 mod mapping_event;
 mod mapping_method;
-mod movable_marker;
+mod movable_markers;
 mod partial_map;
+mod short_string;
+mod team;
+mod thread;
 mod tree;
 
 pub use algorithm1::{Algorithm1Run, MappingChoice};
@@ -31,5 +34,8 @@ pub use mapping_event::{
     FoldingEvent, MapDart, MappingEvent, MovableEvent, SafeguardEvent, StepPurpose,
 };
 pub use mapping_method::MappingMethod;
-pub use movable_marker::MovableMarkerRun;
+pub use movable_markers::MovableMarkerRun;
 pub use partial_map::{FACING, PartialMap};
+pub use short_string::ShortStringRun;
+pub use team::TeamRun;
+pub use thread::ThreadRun;

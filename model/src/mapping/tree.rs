@@ -97,16 +97,21 @@ impl BreadthFirstTree {
         self.hops(map.vertex(one)) == self.hops(map.vertex(other))
     }
 
-    /// The unexplored dart that is fewest hops from the root; then of the vertex discovered first;
-    /// then with the lowest index. `None` if nothing is unexplored.
-    pub(super) fn nearest_unexplored(&mut self, map: &PartialMap) -> Option<Dart> {
+    /// Of the unexplored darts that are open, the one that is fewest hops from the root; then of the vertex discovered
+    /// first; then with the lowest index. `None` if there is none.
+    pub(super) fn nearest_unexplored(
+        &mut self,
+        map: &PartialMap,
+        is_open: impl Fn(Dart) -> bool,
+    ) -> Option<Dart> {
         let mut level = 0;
         loop {
             let end = self.reached.len();
             let frontier =
-                self.reached[level..end].iter().filter(|&&vertex| map.is_frontier(vertex));
-            if let Some(&vertex) = frontier.min() {
-                return map.unexplored_at(vertex).next();
+                self.reached[level..end].iter().filter(|vertex| map.is_frontier(**vertex));
+            let open = frontier.flat_map(|vertex| map.unexplored_at(*vertex));
+            if let Some(dart) = open.filter(|dart| is_open(*dart)).min() {
+                return Some(dart);
             }
             level = end;
             while self.grown < end {

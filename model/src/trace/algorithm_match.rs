@@ -66,7 +66,7 @@ pub fn match_amended(
     if algorithm == MappingAlgorithm::Algorithm1 {
         return match_choices(trace, claim, bound, amend);
     }
-    with_explorer!(algorithm, E => match_default::<E>(algorithm, trace, bound, amend))
+    with_explorer!(algorithm, new => match_default(new, algorithm, trace, bound, amend))
 }
 
 /// Matches a trace with an algorithm with the default choices, and then with audits of its map. If the map is
@@ -105,9 +105,8 @@ struct DefaultRun<E> {
     purpose: StepPurpose,
 }
 
-impl<E: Explorer + Default> DefaultRun<E> {
-    fn new(bound: usize) -> Self {
-        let mut explorer = E::default();
+impl<E: Explorer> DefaultRun<E> {
+    fn new(mut explorer: E, bound: usize) -> Self {
         explorer.limit_darts(bound);
         let (coverage, purpose) = (AlgorithmCoverage::default(), explorer.purpose(None));
         Self { explorer, coverage, moves: 0, has_begun: false, purpose }
@@ -148,14 +147,15 @@ impl<E: Explorer + Default> DefaultRun<E> {
 }
 
 /// Matches a trace with the default choices of an algorithm, which are its only ones.
-fn match_default<E: Explorer + Default + Into<MapWalk>>(
+fn match_default<E: Explorer + Into<MapWalk>>(
+    new: impl Fn() -> E,
     algorithm: MappingAlgorithm,
     trace: &Trace,
     bound: usize,
     mut amend: Option<Amendment>,
 ) -> AlgorithmMatch {
     let mut trace = Cow::Borrowed(trace);
-    let mut run = DefaultRun::<E>::new(bound);
+    let mut run = DefaultRun::new(new(), bound);
     let mut amended_before = 0;
     let reached = loop {
         let (ended, before) = run.match_trace(&trace, amend.is_some());
@@ -188,7 +188,7 @@ fn match_choices(
 ) -> AlgorithmMatch {
     let algorithm = MappingAlgorithm::Algorithm1;
     let mut trace = Cow::Borrowed(trace);
-    let mut default = DefaultRun::<Algorithm1Run>::new(bound);
+    let mut default = DefaultRun::new(Algorithm1Run::default(), bound);
     let mut search = Search::new(claim, bound);
     let mut amended_before = WalkEvent::Percept(0);
     let (run, found) = loop {

@@ -264,9 +264,7 @@ pub(crate) mod tests {
         graph: &EmbeddedGraph,
         facing: Dart,
     ) -> Trace {
-        with_explorer!(algorithm, E => {
-            doors_of(graph, facing, |world| explore(&mut E::default(), world))
-        })
+        with_explorer!(algorithm, new => doors_of(graph, facing, |world| explore(&mut new(), world)))
     }
 
     pub(crate) fn doors_of(

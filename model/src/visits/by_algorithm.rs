@@ -103,18 +103,18 @@ pub fn explain_by_algorithm(
         |(graph, states)| Place::InWorld(graph, states.to_vec()),
     );
     let search = Search { algorithm, marker, bounds, steps: 0, is_cut: false };
-    with_explorer!(algorithm, E => search.run::<E>(visits, place, watch))
+    with_explorer!(algorithm, new => search.run(new(), visits, place, watch))
 }
 
 impl Search {
-    fn run<E: Explorer + Default>(
+    fn run<E: Explorer>(
         mut self,
+        mut explorer: E,
         visits: &[VisitSet],
         place: Place,
         watch: &dyn Watch,
     ) -> Explanation {
         let Some(first) = visits.first() else { return Explanation::Explained(Vec::new()) };
-        let mut explorer = E::default();
         explorer.limit_darts(self.bounds.darts);
         let runs = vec![Run { explorer, moves: 0, next: NextStep::Begin }];
         let choice = Choice { moves: Vec::new(), place, runs };

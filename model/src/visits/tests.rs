@@ -7,6 +7,7 @@ use proptest::{collection::vec, prelude::*};
 use super::*;
 use crate::{
     aid::State,
+    aid::markers::MOVABLE,
     any_graph::{Class, StopAt, any_graph, by_neighbours, starts},
     embedded_graph::{Dart, EmbeddedGraph},
     mapping::MappingAlgorithm,
@@ -260,7 +261,7 @@ fn the_doors_of_a_whole_run_are_among_those_of_open_visits() {
         }
     }
     let visits = [VisitSet::new([unmarked(3, 1)], VisitWay::Through)];
-    let movable = MappingAlgorithm::MovableMarker;
+    let movable = MappingAlgorithm::MovableMarkers(MOVABLE);
     let found = explain_by_algorithm(movable, &visits, None, BOUNDS, &());
     assert_eq!(found, Explanation::NotKnown);
 }

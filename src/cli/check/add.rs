@@ -56,10 +56,10 @@ impl CheckArguments {
             return Err(CliError::at(files.join(", "), "there is no line of a shard"));
         };
         let title = line.algorithm.as_deref().unwrap_or_default();
-        let is_this = |known: &&MappingAlgorithm| {
+        let is_this = |known: &MappingAlgorithm| {
             known.info().title == title && known.aid().name() == line.marker
         };
-        let algorithm = MappingAlgorithm::ALL.iter().find(is_this).ok_or_else(|| {
+        let algorithm = MappingAlgorithm::all().find(is_this).ok_or_else(|| {
             let cause = format!("no algorithm is `{title}` with marker `{}`", line.marker);
             CliError::at(place, cause)
         })?;

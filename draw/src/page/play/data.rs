@@ -31,9 +31,9 @@ fn game(world: &NamedWorld, marker: AidKind) -> Value {
         let doors = folding::certificate(graph, facing);
         walk("Certificate", &doors.into_iter().map(Action::Take).collect::<Vec<_>>(), true)
     });
-    let algorithms =
-        MappingAlgorithm::ALL.iter().rev().filter(|algorithm| algorithm.aid() == marker);
-    let runs = algorithms.filter_map(|&algorithm| {
+    let algorithms: Vec<_> =
+        MappingAlgorithm::all().filter(|algorithm| algorithm.aid() == marker).collect();
+    let runs = algorithms.into_iter().rev().filter_map(|algorithm| {
         Some(walk(algorithm.info().title, &actions_of(algorithm, marker, graph, facing)?, false))
     });
     json!({
@@ -56,7 +56,7 @@ fn actions_of(
     graph: &EmbeddedGraph,
     facing: Dart,
 ) -> Option<Vec<Action>> {
-    if marker.moves() && !graph.is_simple() {
+    if algorithm.needs_simple() && !graph.is_simple() {
         return None;
     }
     let mut actions = Vec::new();

@@ -127,6 +127,20 @@ impl FoldingRun {
         self.trail.is_complete() && self.map().complete().is_some()
     }
 
+    /// Begins a run after some moves that were made before.
+    pub(super) fn begin_after<W: ObservedWorld>(&mut self, moves: u64, world: &mut W) -> Mapped<W> {
+        self.clear();
+        self.walk.set_moves(moves);
+        let percept = world.percept().map_err(MappingError::World)?;
+        if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
+            return Err(Contradiction::Start { perceived: percept }.into());
+        }
+        self.walk.begin(percept, world)?;
+        self.trail.restart(percept)?;
+        self.put_in_map(self.trail.pose());
+        self.settle(world)
+    }
+
     pub(crate) fn clear(&mut self) {
         self.walk.clear();
         self.in_trail.clear();
@@ -145,12 +159,14 @@ impl Explorer for FoldingRun {
     type Aid = MarkerKind;
     type Choice = FoldingStep;
 
-    const INFO: ExplorerInfo = ExplorerInfo {
-        option: "folding",
-        title: "Folding explorer",
-        in_words: "the folding explorer",
-        order: CostOrder::EdgesSquaredVertices,
-    };
+    fn info(&self) -> ExplorerInfo {
+        ExplorerInfo {
+            option: "folding",
+            title: "Folding explorer",
+            in_words: "the folding explorer",
+            order: CostOrder::EdgesSquaredVertices,
+        }
+    }
 
     fn aid(&self) -> MarkerKind {
         Directional
@@ -161,15 +177,7 @@ impl Explorer for FoldingRun {
     }
 
     fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
-        self.clear();
-        let percept = world.percept().map_err(MappingError::World)?;
-        if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
-            return Err(Contradiction::Start { perceived: percept }.into());
-        }
-        self.walk.begin(percept, world)?;
-        self.trail.restart(percept)?;
-        self.put_in_map(self.trail.pose());
-        self.settle(world)
+        self.begin_after(0, world)
     }
 
     fn choose(&mut self) -> Result<Option<FoldingStep>, InvalidStep> {

@@ -1,38 +1,14 @@
 //! The judge finds each flaw of the folding explorer.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
 use super::*;
 use crate::{
-    any_graph::{Class, starts},
-    check::{
-        judge,
-        smallest_failure::{Failure, new},
-    },
-    injected_flaw::{InjectedFlaw, inject},
-    isomorphism::{Candidate, code},
-    mapping::{Flaw, explore},
-    world::GraphWorld,
+    any_graph::Class,
+    check::smallest_failure::{Failure, injected_failure, new},
 };
 
-/// The first start of the class `multigraph` with up to so many edges on which the explorer fails.
-fn first_failure(most: usize) -> Option<Failure> {
-    let mut explorer = FoldingRun::default();
-    let mut candidate = Candidate::default();
-    (1..=most).flat_map(|edges| starts(Class::Multigraph, edges)).find_map(|graph| {
-        // With a flaw, what the code relies on may be false. Overflows panic in tests.
-        let judged = catch_unwind(AssertUnwindSafe(|| {
-            let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
-            // The map may have more darts than the world.
-            let mut world = GraphWorld::new(&graph, Dart(0)).with_bound(bound);
-            let ended = explore(&mut explorer, &mut world).map_err(Flaw::from);
-            let judged =
-                ended.and_then(|()| judge(&explorer, Dart(0), &world, &mut candidate).map(|_| ()));
-            judged.map_err(|flaw| format!("after {} moves: {flaw}", world.moves()))
-        }));
-        let report = judged.unwrap_or_else(|_| Err("it panics".to_owned())).err()?;
-        Some((graph.edge_count(), code(&graph, Dart(0)).words().to_vec(), report))
-    })
+/// The first start of the class `multigraph` with up to 4 edges on which the explorer fails.
+fn first_failure(flaw: Option<InjectedFlaw>) -> Option<Failure> {
+    injected_failure(flaw, FoldingRun::default(), Class::Multigraph, 4)
 }
 
 #[test]
@@ -41,7 +17,7 @@ fn the_judge_finds_each_flaw_of_the_folding_explorer_on_a_small_start() {
         ContradictionIgnored, ForcedNotUnited, NotTested, OneHypothesisExamined,
         PlaceAddedTooEarly, ProofByOtherWalk, SightingNotUnited, SightingsNotCompared,
     };
-    assert_eq!(inject(None, || first_failure(4)), None);
+    assert_eq!(first_failure(None), None);
     let not_complete = |moves: u32| {
         format!(
             "after {moves} moves: invalid step: there is nothing left to do, and the trail is \
@@ -64,6 +40,6 @@ fn the_judge_finds_each_flaw_of_the_folding_explorer_on_a_small_start() {
         (ProofByOtherWalk, (3, vec![new(1), new(5), 5, 4], degrees.to_owned())),
     ];
     for (flaw, failure) in expected {
-        assert_eq!(inject(Some(flaw), || first_failure(4)), Some(failure), "{flaw:?}");
+        assert_eq!(first_failure(Some(flaw)), Some(failure), "{flaw:?}");
     }
 }

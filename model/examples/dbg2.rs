@@ -1,0 +1,6 @@
+#[path = "random_buildings/totals.rs"]
+#[allow(unused)]
+mod totals;
+fn main() {
+    totals::aids();
+}
