@@ -67,6 +67,7 @@ mod folding;
 mod lazy;
 mod markers;
 mod movable;
+mod moving;
 mod optimum;
 mod perception;
 mod random_buildings;

@@ -13,14 +13,31 @@ use crate::{
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {
     let cycle = |edges: u32| [vec![new(2); edges as usize], vec![2 * edges - 1]].concat();
+    let kite = || vec![new(3), new(2), new(1), new(2), 7];
+    let too_many =
+        |moves: u32| format!("after {moves} moves: no more than {moves} moves are allowed");
+    let no_marker = "after 12 moves: there is no marker here that could be picked up";
+    let left_there = "after 7 moves: the world contradicts itself: the robot carries the marker, but behind the \
+                      unexplored dart 1 of vertex v3 there is degree 2 with a marker lying there";
+    let seen = |vertex: u32, degree: u32, moves: u32| {
+        format!(
+            "after {moves} moves: the world contradicts itself: at the known vertex v{vertex}, entered by its \
+             dart 1: expected degree {degree} without the marker, found degree {degree} with a marker lying there"
+        )
+    };
     for (flaw, edges, code, failure) in [
-        (InjectedFlaw::EveryPlaceIsNew, 3, cycle(3), String::new()),
-        (InjectedFlaw::OneCandidateSearched, 0, vec![], String::new()),
-        (InjectedFlaw::LeftBehind, 0, vec![], String::new()),
-        (InjectedFlaw::MarkerLeftBehind, 0, vec![], String::new()),
-        (InjectedFlaw::FirstDartIsIt, 0, vec![], String::new()),
-        (InjectedFlaw::NotCarried, 0, vec![], String::new()),
-        (InjectedFlaw::RejectedIsConfirmed, 0, vec![], String::new()),
+        (InjectedFlaw::EveryPlaceIsNew, 3, cycle(3), too_many(20)),
+        (
+            InjectedFlaw::OneCandidateSearched,
+            6,
+            vec![new(3), new(3), new(3), new(3), 7, 10, 11],
+            too_many(69),
+        ),
+        (InjectedFlaw::LeftBehind, 4, cycle(4), left_there.to_owned()),
+        (InjectedFlaw::MarkerLeftBehind, 4, cycle(4), seen(3, 2, 11)),
+        (InjectedFlaw::FirstDartIsIt, 4, kite(), too_many(35)),
+        (InjectedFlaw::NotCarried, 4, vec![new(3), new(2), new(2), new(1), 6], seen(0, 3, 8)),
+        (InjectedFlaw::RejectedIsConfirmed, 4, kite(), no_marker.to_owned()),
     ] {
         let found = injected_failure(Some(flaw), MovableMarkerRun::default(), Class::Simple, 6);
         assert_eq!(found, Some((edges, code, failure)), "{flaw:?}");

@@ -10,12 +10,17 @@ use crate::{
 
 #[test]
 fn the_judge_finds_each_flaw_on_a_small_start() {
+    let two_moves = "after 2 moves: no more than 2 moves are allowed";
+    let not_there = "after 3 moves: there is no marker here that could be picked up";
     for (flaw, failure) in [
         (None, None),
-        (Some(InjectedFlaw::EveryPlaceIsNew), Some((1, vec![new(2), 1], String::new()))),
-        (Some(InjectedFlaw::OneHypothesisExamined), Some((1, vec![new(2), 1], String::new()))),
+        (Some(InjectedFlaw::EveryPlaceIsNew), Some((1, vec![new(2), 1], two_moves.to_owned()))),
+        (
+            Some(InjectedFlaw::OneHypothesisExamined),
+            Some((4, vec![new(2), new(3), 4, new(3), 7], not_there.to_owned())),
+        ),
     ] {
-        let found = injected_failure(flaw, ThreadRun::default(), Class::Multigraph, 5);
+        let found = injected_failure(flaw, ThreadRun::default(), Class::Multigraph, 4);
         assert_eq!(found, failure, "{flaw:?}");
     }
 }
