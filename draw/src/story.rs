@@ -65,18 +65,21 @@ pub struct Story {
     moves_not_printed: u64,
     /// The robot's moves up to the last line.
     moves: u64,
-    aid: StoryAid,
+    /// None before the run has started.
+    aid: Option<StoryAid>,
+    /// The number of the robot that was sent last.
+    sent: u8,
 }
 
 /// What the robot marks places with, if that moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StoryAid {
     Marker,
-    /// Several markers, or scouts.
-    Several(&'static str),
+    Markers,
     String,
-    /// One scout.
-    Scout,
+    /// A string that lies over one edge.
+    LaidString,
+    Scouts,
 }
 
 impl Story {
@@ -90,7 +93,7 @@ impl Story {
     #[must_use]
     pub fn with_head(head: String) -> Self {
         let lines = vec![StoryLine { text: head, ..StoryLine::default() }];
-        Self { lines, round: 0, rejected: 0, moves_not_printed: 0, moves: 0, aid: StoryAid::Marker }
+        Self { lines, round: 0, rejected: 0, moves_not_printed: 0, moves: 0, aid: None, sent: 2 }
     }
 
     /// The lines of a whole story, and the number of them after each number of steps.
@@ -117,8 +120,8 @@ impl Story {
         let map = journey.map();
         match event {
             MappingEvent::Started { percept } => {
-                let (aid, at_start) = at_start(percept.sighting);
-                self.aid = aid;
+                let (aid, at_start) = at_start(percept.sighting, self.aid.is_some());
+                self.aid = Some(aid);
                 let text = format!("{at_start}, at vertex v0 of the map. It senses {percept}.");
                 self.add_paragraph(text);
             }
@@ -162,20 +165,8 @@ impl Story {
 
     /// A round begins: the robot has followed an unexplored dart.
     fn add_round(&mut self, journey: &MapWalk, edge: Dart, with: &str, percept: Percept) {
-        self.add_round_of(journey, "the robot", edge, with, percept);
-    }
-
-    /// A round begins with this robot.
-    fn add_round_of(
-        &mut self,
-        journey: &MapWalk,
-        robot: &str,
-        edge: Dart,
-        with: &str,
-        percept: Percept,
-    ) {
         let (edge, moves) = (dart(journey.map(), edge), self.take_moves(journey));
-        self.begin_round(format!("{robot} takes {edge}{with}{moves} and senses {percept}."));
+        self.begin_round(format!("the robot takes {edge}{with}{moves} and senses {percept}."));
     }
 
     fn begin_round(&mut self, text: String) {
@@ -304,17 +295,18 @@ pub fn head(world: &NamedWorld, facing: Dart) -> String {
 }
 
 /// What the robot has at its start, and where that is, in words.
-fn at_start(sighting: Sighting) -> (StoryAid, &'static str) {
+fn at_start(sighting: Sighting, string_is_laid: bool) -> (StoryAid, &'static str) {
     match sighting {
-        Sighting::Pointing(_) => (StoryAid::Marker, "It puts its marker down here"),
-        Sighting::Lying(2..) | Sighting::These(_) => {
-            (StoryAid::Several("marker"), "Its markers lie here")
+        Sighting::Pointing(_) if string_is_laid => {
+            (StoryAid::LaidString, "The fixed end of its string is here, as a marker")
         }
+        Sighting::Pointing(_) => (StoryAid::Marker, "It puts its marker down here"),
+        Sighting::Lying(2..) | Sighting::These(_) => (StoryAid::Markers, "Its markers lie here"),
         Sighting::String(_) => (StoryAid::String, "The fixed end of its string is here"),
         Sighting::Team(TeamView([_, OtherRobot::Absent])) => {
-            (StoryAid::Scout, "The other robot is here, too")
+            (StoryAid::Scouts, "The other robot is here")
         }
-        Sighting::Team(_) => (StoryAid::Several("robot"), "The other robots are here, too"),
+        Sighting::Team(_) => (StoryAid::Scouts, "The other robots are here"),
         _ => (StoryAid::Marker, "Its marker lies here"),
     }
 }

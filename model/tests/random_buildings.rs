@@ -1,9 +1,14 @@
 //! The moves in random buildings that `worlds/README.md` publishes, of the smaller ones. Each map is judged.
 
+#[path = "../examples/random_buildings/buildings.rs"]
+mod buildings;
 #[path = "../examples/random_buildings/totals.rs"]
 mod totals;
 
-use totals::{MORE_HALLWAYS, Totals};
+use toposlam_model::mapping::MappingAlgorithm;
+
+use buildings::{MORE_HALLWAYS, buildings, moves};
+use totals::Totals;
 
 #[test]
 fn the_published_moves_in_random_buildings_are_those_of_right_maps() {
@@ -17,5 +22,25 @@ fn the_published_moves_in_random_buildings_are_those_of_right_maps() {
             Totals::with_size(junctions, more_hallways);
         let found = [edges as u64, certificate as u64, folding, algorithm1];
         assert_eq!(found, expected, "{junctions} junctions");
+    }
+}
+
+/// The moves with aids that move that `docs/aids.md` publishes, of the smaller ones.
+#[test]
+fn the_published_moves_with_other_aids_are_those_of_right_maps() {
+    for (aid, expected) in [
+        ("movable", [3_392, 12_689]),
+        ("movable-4-distinct", [2_130, 7_371]),
+        ("movable-directional", [3_438, 12_761]),
+        ("string-1", [1_233, 3_249]),
+        ("string", [706, 1_708]),
+        ("team-2", [2_125, 8_830]),
+        ("team-3-round", [1_218, 4_837]),
+    ] {
+        let algorithm = MappingAlgorithm::all().find(|known| known.aid().name() == aid).unwrap();
+        let total = |junctions| -> u64 {
+            buildings(junctions, MORE_HALLWAYS).iter().map(|graph| moves(algorithm, graph).0).sum()
+        };
+        assert_eq!([25, 50].map(total), expected, "{aid}");
     }
 }

@@ -60,8 +60,9 @@ use report::CheckReport;
 /// For each start, a bijection proves that the map is isomorphic to the world, the robot is where it
 /// believes it is, and the number of moves is at most m n + 2 m^2 (n - 1), for m edges and n vertices.
 ///
-/// With --marker movable, the algorithm for one movable marker is checked instead, on worlds without
-/// loops and parallel edges. Its bound is 3 n (n - 1) / 2 + (m - n + 1) (6 n - 7) moves.
+/// With --aid KIND, the explorer of another marking aid is checked instead, with its own bound: of markers that the robot
+/// carries, a string, or other robots. Undirected markers, and robots without a front, need worlds without loops and
+/// parallel edges.
 ///
 /// With --explorer, a program of yours is checked instead, in any language.
 #[derive(clap::Args)]
@@ -75,7 +76,8 @@ Examples:
   toposlam check --add one.jsonl two.jsonl    the whole from its shares
   toposlam check --edges 1..=4 --choices all  every open choice
   toposlam check --from worlds/petersen.toml  the worlds in a file
-  toposlam check --marker movable             a marker that the robot carries
+  toposlam check --aid movable                a marker that the robot carries
+  toposlam check --aid string --edges 6       a string as long as it takes
   toposlam check --algorithm folding          the folding explorer
   toposlam check --explorer ./mine --edges 5  your own program
   toposlam check --explorer ./mine --failed run.html
@@ -106,11 +108,12 @@ pub(super) struct CheckArguments {
     edges: EdgeRange,
 
     /// Class of worlds: multigraph, simple, corridor or planar [default: multigraph, or simple with
-    /// --marker movable]
+    /// an aid that needs it]
     #[arg(long)]
     class: Option<Class>,
 
-    /// The robot's marking aid: directional (Algorithm 1) or movable; any kind with --explorer
+    /// The robot's marking aid: directional (Algorithm 1), or one that moves, as movable, string or team-2; any
+    /// kind with --explorer
     #[arg(
         long,
         visible_alias = "aid",

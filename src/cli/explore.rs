@@ -49,8 +49,8 @@ use summary::Summary;
 /// Algorithm 1 runs, or with --algorithm folding the folding explorer, which needs fewer moves. With --audit the robot
 /// then walks the certificate of its map, and compares each percept with the map.
 ///
-/// With --marker movable, the algorithm for one movable marker runs instead. It needs a world without
-/// loops and parallel edges.
+/// With --aid KIND, the explorer of another marking aid runs instead: of markers that the robot carries, a string, or
+/// other robots. Undirected markers, and robots without a front, need a world without loops and parallel edges.
 ///
 /// With --explorer, a program of yours runs instead, and each of its steps is printed.
 #[derive(clap::Args)]
@@ -61,7 +61,8 @@ Examples:
   toposlam explore worlds/figure-1b.toml --start X:B --map map.svg
   toposlam explore worlds/shape-8.toml --choices all
   toposlam explore worlds/shape-8.toml --algorithm folding
-  toposlam explore worlds/shape-8.toml --marker movable
+  toposlam explore worlds/shape-8.toml --aid movable
+  toposlam explore worlds/building-25.toml --aid string
   toposlam explore worlds/building-25.toml --story=summary
   toposlam explore worlds/shape-6.toml --certificate
   toposlam explore worlds/shape-6.toml --algorithm folding --audit
@@ -92,11 +93,12 @@ pub(super) struct ExploreArguments {
     #[arg(long, default_value = "algorithm1", hide_possible_values = true, value_parser = algorithms())]
     algorithm: MappingAlgorithm,
 
-    /// The robot's marking aid: directional or movable; any kind with --explorer
+    /// The robot's marking aid: directional, or one that moves, as movable, string or team-2; any kind with
+    /// --explorer
     #[arg(long, visible_alias = "aid", default_value = "directional", value_name = "KIND", value_parser = marker_kind)]
     marker: AidKind,
 
-    /// Runs: default, or all to also try every choice that Algorithm 1 leaves open; with all=N, stop at more
+    /// Runs: default, or all to also try every choice that the algorithm leaves open; with all=N, stop at more
     /// than N states, between rounds (line 4) and within (line 8), instead of 1000000
     #[arg(long, default_value = "default", value_parser = run_choices)]
     choices: RunChoices,

@@ -2,7 +2,9 @@
 
 use toposlam_model::{
     aid::AidAction,
+    embedded_graph::Dart,
     mapping::{MapWalk, MovableEvent},
+    percept::{OtherRobot, Percept, Sighting},
 };
 
 use super::{Story, StoryAid, dart};
@@ -11,28 +13,29 @@ use crate::{moment::grouped, text::counted};
 impl Story {
     pub(super) fn add_movable(&mut self, journey: &MapWalk, event: MovableEvent) {
         let map = journey.map();
-        let (thing, no_thing) = match self.aid {
-            StoryAid::Marker => ("the marker", "the marker"),
-            StoryAid::String => ("the string", "the string"),
-            StoryAid::Scout => ("robot 2", "robot 2"),
-            StoryAid::Several("robot") => ("a robot", "another robot"),
-            StoryAid::Several(_) => ("a marker", "another marker"),
+        let aid = self.aid.unwrap_or(StoryAid::Marker);
+        // What is found, and what is not.
+        let (thing, no_thing) = match aid {
+            StoryAid::Markers => ("a marker", "no marker"),
+            StoryAid::Scouts => ("another robot", "no other robot"),
+            _ => ("the marker", "the marker"),
         };
         match event {
             MovableEvent::Arrived { edge, percept, candidates } => {
-                match self.aid {
-                    StoryAid::Marker => self.add_round(journey, edge, " with the marker", percept),
+                match aid {
+                    StoryAid::Markers => self.add_round(journey, edge, " with markers", percept),
                     StoryAid::String => self.add_round(journey, edge, " with the string", percept),
-                    StoryAid::Several("marker") => {
-                        self.add_round(journey, edge, " with markers", percept);
-                    }
-                    _ => self.add_round_of(journey, "another robot", edge, "", percept),
+                    StoryAid::Scouts => self.add_scout(journey, edge, percept),
+                    _ => self.add_round(journey, edge, " with the marker", percept),
                 }
                 self.add_places(candidates, map.vertex_count());
             }
             MovableEvent::Did(action) => self.add_action(journey, action),
             MovableEvent::NotAt { vertex } => {
-                let why = format!("because {no_thing} is not here");
+                let why = match aid {
+                    StoryAid::Marker => "because the marker is not here".to_owned(),
+                    _ => format!("because {no_thing} is here"),
+                };
                 self.add_rejected(journey, &format!("v{}", vertex.0), &why);
             }
             MovableEvent::Found { vertex } => {
@@ -46,17 +49,17 @@ impl Story {
             }
             MovableEvent::NotFound => {
                 self.add_omitted();
-                let thing = match self.aid {
-                    StoryAid::Several("robot") => "One robot",
-                    StoryAid::Several(_) => "One marker",
-                    StoryAid::Scout => "Robot 2",
+                let thing = match aid {
+                    StoryAid::Markers => "One marker",
+                    StoryAid::Scouts => "One robot",
                     _ => "The marker",
                 };
                 self.add_line(format!("{thing} is at no known vertex."));
             }
             MovableEvent::NotBehind { dart: behind, percept } => {
-                let lack = if self.aid == StoryAid::Marker { ", no marker" } else { "" };
-                let why = format!("because it leads to {percept}{lack}");
+                let degree = counted(percept.degree as usize, "door");
+                let why =
+                    format!("because it leads to {degree}, {}", no_thing.replace("the", "no"));
                 self.add_rejected(journey, &dart(map, behind), &why);
             }
             MovableEvent::Behind { dart: behind } => {
@@ -66,14 +69,31 @@ impl Story {
         }
     }
 
+    /// A round begins: a robot that was sent has followed an unexplored dart.
+    fn add_scout(&mut self, journey: &MapWalk, edge: Dart, percept: Percept) {
+        let sent = self.sent;
+        let seen = match percept.sighting {
+            Sighting::Team(view) => view.0.get(usize::from(sent).wrapping_sub(2)).copied(),
+            _ => None,
+        };
+        let who = match seen {
+            Some(OtherRobot::Here | OtherRobot::HereAlong(_)) => ", where the explorer is",
+            Some(OtherRobot::WithSecond | OtherRobot::WithSecondAlong(_)) => ", where robot 2 is",
+            _ => "",
+        };
+        let (edge, moves) = (dart(journey.map(), edge), self.take_moves(journey));
+        let degree = counted(percept.degree as usize, "door");
+        self.begin_round(format!("robot {sent} takes {edge}{moves} and senses {degree}{who}."));
+    }
+
     /// How many places can be the one that was just reached.
     fn add_places(&mut self, candidates: usize, known: usize) {
         let count = match candidates {
             0 => "none".to_owned(),
             some => grouped(some as u128),
         };
-        if self.aid == StoryAid::String {
-            return self.add_line(format!("Unexplored darts where the string looks so: {count}."));
+        if self.aid == Some(StoryAid::String) {
+            return self.add_line(format!("Unexplored darts that the string fits: {count}."));
         }
         let known = match known {
             1 => "the 1 known vertex".to_owned(),
@@ -83,27 +103,27 @@ impl Story {
     }
 
     fn add_action(&mut self, journey: &MapWalk, action: AidAction) {
-        let thing = match (self.aid, action) {
-            (StoryAid::String, _) => "the string's end".to_owned(),
+        let Some(aid) = self.aid else {
+            self.aid = Some(StoryAid::LaidString);
+            let text = "It lays its string over the edge behind it, and comes back.";
+            return self.add_paragraph(text.to_owned());
+        };
+        let thing = match (aid, action) {
+            (StoryAid::String, _) => "the end of the string".to_owned(),
             (_, AidAction::DropMarker(number) | AidAction::PickUpMarker(number)) => {
                 format!("marker {number}")
             }
-            (StoryAid::Several(_), _) => "a marker".to_owned(),
+            (StoryAid::Markers, _) => "a marker".to_owned(),
             _ => "the marker".to_owned(),
         };
-        let it = match (self.aid, action) {
-            (_, AidAction::DropMarker(number) | AidAction::PickUpMarker(number)) => {
-                format!("marker {number}")
-            }
-            (StoryAid::Several(_), _) => "a marker".to_owned(),
-            _ => "it".to_owned(),
-        };
         let stands = journey.moves() == self.moves;
+        let at = journey.map().vertex(journey.robot()).0;
         match action {
+            AidAction::Send { robot, .. } => self.sent = robot,
             // To validate a place the robot drops the marker where it has just arrived. To validate a
             // back link it drops the marker at the known end of the edge.
             AidAction::Drop | AidAction::DropMarker(_) if stands => {
-                let then = match self.aid {
+                let then = match aid {
                     StoryAid::Marker => " and searches for it",
                     StoryAid::String => " and follows the string",
                     _ => "",
@@ -111,9 +131,8 @@ impl Story {
                 self.add_line(format!("The robot drops {thing} here{then}."));
             }
             AidAction::Drop | AidAction::DropMarker(_) => {
-                let (at, moves) =
-                    (journey.map().vertex(journey.robot()).0, self.take_moves(journey));
-                self.add_line(format!("The robot carries {thing} to v{at}{moves} and drops {it}."));
+                let moves = self.take_moves(journey);
+                self.add_line(format!("The robot carries {thing} to v{at}{moves} and drops it."));
             }
             AidAction::PickUp | AidAction::PickUpMarker(_) if self.round == 0 => {
                 self.add_paragraph(format!("It picks {thing} up."));
@@ -123,14 +142,8 @@ impl Story {
             }
             AidAction::PickUp | AidAction::PickUpMarker(_) => {
                 let moves = self.take_moves(journey);
-                let place = if self.aid == StoryAid::String { "it" } else { "the place" };
-                let (to, up) = match self.aid {
-                    StoryAid::Several(_) => (place.to_owned(), thing),
-                    _ => (thing, "it".to_owned()),
-                };
-                self.add_line(format!("The robot returns to {to}{moves} and picks {up} up."));
+                self.add_line(format!("The robot returns to {thing}{moves} and picks it up."));
             }
-            AidAction::Send { .. } => {}
         }
     }
 }

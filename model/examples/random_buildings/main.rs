@@ -9,11 +9,13 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "an example may panic, and prints")]
 
+mod buildings;
 mod totals;
 
 use std::env;
 
-use totals::{BUILDINGS, MORE_HALLWAYS, Totals};
+use buildings::{BUILDINGS, MORE_HALLWAYS};
+use totals::Totals;
 
 fn main() {
     let more_hallways = env::args().nth(1).map_or(MORE_HALLWAYS, |more| more.parse().unwrap());

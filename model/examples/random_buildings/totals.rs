@@ -1,99 +1,12 @@
-//! Random buildings, and the moves of both algorithms in them. Each map is judged by a bijection.
+//! The moves of both algorithms with a directional marker, in the random buildings of one size.
 
-use std::{
-    borrow::Cow,
-    time::{Duration, Instant},
-};
+use std::time::Duration;
 
-use petgraph::unionfind::UnionFind;
 use toposlam_model::{
-    check::judge_map,
-    embedded_graph::{Dart, EmbeddedGraph},
-    folding::certificate_length,
-    isomorphism::Candidate,
-    mapping::{DEFAULT_DART_BOUND, ExploredMap, FACING, MappingAlgorithm},
-    world::GraphWorld,
+    embedded_graph::Dart, folding::certificate_length, mapping::MappingAlgorithm,
 };
 
-/// The number of buildings of each size.
-pub(crate) const BUILDINGS: usize = 10;
-/// Hallways besides the tree, for 100 junctions.
-pub(crate) const MORE_HALLWAYS: usize = 25;
-/// The most hallways at a junction.
-const DOORS: usize = 3;
-
-/// A linear congruential generator, with Knuth's constants.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % n
-    }
-}
-
-/// A building with at most this number of junctions: those that the tree has reached from the first.
-fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> EmbeddedGraph {
-    let width = (1..=junctions).find(|width| width * width >= junctions).unwrap();
-    let right = |at: usize| (at % width + 1 < width).then_some(at + 1);
-    let below = |at: usize| Some(at + width);
-    let neighbours = |at| [right(at), below(at)].into_iter().flatten().map(move |to| (at, to));
-    let mut hallways: Vec<_> =
-        (0..junctions).flat_map(neighbours).filter(|&(_, to)| to < junctions).collect();
-    for last in (1..hallways.len()).rev() {
-        hallways.swap(last, random.below(last + 1));
-    }
-    let mut parts = UnionFind::<usize>::new(junctions);
-    let mut around = vec![Vec::new(); junctions];
-    let mut more = Vec::new();
-    for (from, to) in hallways {
-        if [from, to].iter().all(|&at| around[at].len() < DOORS) && parts.union(from, to) {
-            around[from].push(to);
-            around[to].push(from);
-        } else {
-            more.push((from, to));
-        }
-    }
-    let mut left = junctions * more_hallways / 100;
-    for (from, to) in more {
-        if left > 0 && [from, to].iter().all(|&at| around[at].len() < DOORS) {
-            around[from].push(to);
-            around[to].push(from);
-            left -= 1;
-        }
-    }
-    let lists: Vec<(String, Vec<String>)> = (0..junctions)
-        .filter(|&at| parts.equiv(at, 0))
-        .map(|at| {
-            // Clockwise: up, right, down, left.
-            let side = |to: usize| match to {
-                to if to + width == at => 0,
-                to if to == at + 1 => 1,
-                to if to == at + width => 2,
-                _ => 3,
-            };
-            let mut around = around[at].clone();
-            around.sort_unstable_by_key(|&to| side(to));
-            (at.to_string(), around.iter().map(ToString::to_string).collect())
-        })
-        .collect();
-    EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
-}
-
-/// The moves of an algorithm whose map is right, and how long it computes.
-fn moves(algorithm: MappingAlgorithm, graph: &EmbeddedGraph) -> (u64, Duration) {
-    let begun = Instant::now();
-    let mut world = GraphWorld::new(graph, Dart(0));
-    let (run, mapped) = algorithm.map_world(&mut world, DEFAULT_DART_BOUND, &mut ());
-    mapped.unwrap();
-    let computed = begun.elapsed();
-    let map = Cow::Borrowed(run.map().complete().unwrap());
-    let map = ExploredMap { graph: map, facing: FACING, pose: run.robot() };
-    judge_map(&map, (graph, Dart(0)), world.pose(), &mut Candidate::default()).unwrap();
-    assert_eq!(run.moves(), world.moves());
-    (run.moves(), computed)
-}
+use super::buildings::{buildings, moves};
 
 /// The totals of some buildings of one size.
 #[derive(Debug, Default, PartialEq)]
@@ -107,12 +20,10 @@ pub(crate) struct Totals {
 }
 
 impl Totals {
-    /// Those of [`BUILDINGS`] buildings of seed 7.
+    /// Those of [`BUILDINGS`](super::buildings::BUILDINGS) buildings of seed 7.
     pub(crate) fn with_size(junctions: usize, more_hallways: usize) -> Self {
-        let mut random = Random(7);
         let mut totals = Self::default();
-        for _ in 0..BUILDINGS {
-            let graph = building(junctions, more_hallways, &mut random);
+        for graph in buildings(junctions, more_hallways) {
             totals.edges += graph.edge_count();
             totals.certificate += certificate_length(&graph, Dart(0));
             let (moved, computed) = moves(MappingAlgorithm::Folding, &graph);
@@ -121,35 +32,5 @@ impl Totals {
             totals.algorithm1 += moves(MappingAlgorithm::Algorithm1, &graph).0;
         }
         totals
-    }
-}
-pub(crate) fn aids() {
-    use toposlam_model::mapping::{TeamRun, ThreadRun, explore};
-    for junctions in [25, 50, 100, 200] {
-        for algorithm in MappingAlgorithm::all() {
-            let mut random = Random(7);
-            let (mut total, mut worst) = (0, 0);
-            for _ in 0..BUILDINGS {
-                let graph = building(junctions, MORE_HALLWAYS, &mut random);
-                let mut world = GraphWorld::with_aid(&graph, algorithm.aid(), Dart(0));
-                let (run, mapped) = algorithm.map_world(&mut world, DEFAULT_DART_BOUND, &mut ());
-                mapped.unwrap();
-                let map = Cow::Borrowed(run.map().complete().unwrap());
-                let map = ExploredMap { graph: map, facing: FACING, pose: run.robot() };
-                judge_map(&map, (&graph, Dart(0)), world.pose(), &mut Candidate::default())
-                    .unwrap();
-                assert_eq!(run.moves(), world.moves(), "{}", algorithm.name());
-                assert!(
-                    world.moves() <= algorithm.move_bound(graph.edge_count(), graph.vertex_count())
-                );
-                total += world.moves();
-                worst = worst.max(world.moves());
-            }
-            println!(
-                "{junctions:>4} {:<20} {:>8.1} {worst}",
-                algorithm.name(),
-                total as f64 / BUILDINGS as f64
-            );
-        }
     }
 }

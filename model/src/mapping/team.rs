@@ -77,7 +77,7 @@ impl Default for TeamRun {
 
 impl TeamRun {
     /// A state ready for a run with this team.
-    pub(crate) fn with(team: Team) -> Self {
+    pub fn with(team: Team) -> Self {
         Self {
             team,
             walk: MapWalk::default(),

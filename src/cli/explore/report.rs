@@ -271,7 +271,12 @@ impl<'a> ExploredWorld<'a> {
         let pose = format!("at v{vertex}, entered by dart v{vertex}.{index}");
         print_paragraph(out, &format!("The robot is where it believes it is: {pose}."))?;
         if self.carries {
-            print_paragraph(out, "It carries its marker.")?;
+            let what = match algorithm.aid() {
+                AidKind::Markers(markers) if markers.count() > 1 => "carries its markers",
+                AidKind::String(_) => "holds the end of its string",
+                _ => "carries its marker",
+            };
+            print_paragraph(out, &format!("It {what}."))?;
         }
         Ok(())
     }
