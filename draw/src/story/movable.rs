@@ -25,10 +25,16 @@ impl Story {
                 match aid {
                     StoryAid::Markers => self.add_round(journey, edge, " with markers", percept),
                     StoryAid::String => self.add_round(journey, edge, " with the string", percept),
-                    StoryAid::Scouts => self.add_scout(journey, edge, percept),
+                    StoryAid::Scouts => {
+                        return self.add_scout(journey, (edge, percept), candidates);
+                    }
                     _ => self.add_round(journey, edge, " with the marker", percept),
                 }
-                self.add_places(candidates, map.vertex_count());
+                if aid == StoryAid::Markers && percept.sighting != Sighting::Nothing {
+                    self.add_line("It is at the end of an earlier edge, where it left markers.");
+                } else {
+                    self.add_places(candidates, map.vertex_count());
+                }
             }
             MovableEvent::Did(action) => self.add_action(journey, action),
             MovableEvent::NotAt { vertex } => {
@@ -70,7 +76,12 @@ impl Story {
     }
 
     /// A round begins: a robot that was sent has followed an unexplored dart.
-    fn add_scout(&mut self, journey: &MapWalk, edge: Dart, percept: Percept) {
+    fn add_scout(
+        &mut self,
+        journey: &MapWalk,
+        (edge, percept): (Dart, Percept),
+        candidates: usize,
+    ) {
         let sent = self.sent;
         let seen = match percept.sighting {
             Sighting::Team(view) => view.0.get(usize::from(sent).wrapping_sub(2)).copied(),
@@ -84,6 +95,9 @@ impl Story {
         let (edge, moves) = (dart(journey.map(), edge), self.take_moves(journey));
         let degree = counted(percept.degree as usize, "door");
         self.begin_round(format!("robot {sent} takes {edge}{moves} and senses {degree}{who}."));
+        if who.is_empty() {
+            self.add_places(candidates, journey.map().vertex_count());
+        }
     }
 
     /// How many places can be the one that was just reached.
