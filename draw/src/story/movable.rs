@@ -64,8 +64,8 @@ impl Story {
             }
             MovableEvent::NotBehind { dart: behind, percept } => {
                 let degree = counted(percept.degree as usize, "door");
-                let why =
-                    format!("because it leads to {degree}, {}", no_thing.replace("the", "no"));
+                let lack = if aid == StoryAid::Scouts { no_thing } else { "no marker" };
+                let why = format!("because it leads to {degree}, {lack}");
                 self.add_rejected(journey, &dart(map, behind), &why);
             }
             MovableEvent::Behind { dart: behind } => {
