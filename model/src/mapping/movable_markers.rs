@@ -20,14 +20,14 @@ use crate::{
     percept::{Door, Percept, Sighting},
     world::World,
 };
-use carried::{Carried, Marks};
+use carried::{CarriedMarkers, Marks};
 
 /// The state of a run with movable markers: the robot's walk, and the ends of edges that it has marked.
 #[derive(Debug)]
 pub struct MovableMarkerRun {
     aid: AidKind,
     walk: MapWalk,
-    carried: Carried,
+    carried: CarriedMarkers,
     /// The edges of this round, in the order in which they were followed.
     ends: Vec<UnknownEnd>,
     /// No marks are left that would tell the next place from those of this round.
@@ -74,7 +74,7 @@ impl MovableMarkerRun {
         Self {
             aid,
             walk: MapWalk::default(),
-            carried: Carried::none(),
+            carried: CarriedMarkers::none(),
             ends: Vec::new(),
             is_full: false,
             candidates: Vec::new(),
@@ -121,13 +121,13 @@ impl Explorer for MovableMarkerRun {
     /// The robot picks the markers up at v0; S is v0; U is its edges.
     fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         self.walk.clear();
-        self.carried = Carried::none();
+        self.carried = CarriedMarkers::none();
         self.ends.clear();
         self.is_full = false;
         self.candidates.clear();
         self.back_links.clear();
         let percept = world.percept().map_err(MappingError::World)?;
-        let all = Carried::all(self.aid);
+        let all = CarriedMarkers::all(self.aid);
         if percept.degree == 0 || Some(percept.sighting) != all.lying(Door::BACK) {
             return Err(Contradiction::StartWithoutMarker { perceived: percept }.into());
         }
@@ -158,7 +158,8 @@ impl Explorer for MovableMarkerRun {
     /// other edge is left, the robot looks for the markers.
     fn step<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
         self.mark_end(edge, world)?;
-        if self.is_full || self.carried.is_none() || self.choose()?.is_none() {
+        let is_begun = !self.ends.is_empty();
+        if is_begun && (self.is_full || self.carried.is_none() || self.choose()?.is_none()) {
             self.search(world)?;
             self.fetch(world)?;
             self.close_loops(world)?;
@@ -202,7 +203,7 @@ impl Explorer for MovableMarkerRun {
     /// that is marked alike, the robot goes back in vain, at most once in a round.
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
         let (m, n) = (edges as u64, vertices as u64);
-        let all = Carried::all(self.aid);
+        let all = CarriedMarkers::all(self.aid);
         let new = n.saturating_mul(n.saturating_sub(1)).saturating_mul(3) / 2;
         let closed = if self.points() {
             n.saturating_mul(3).saturating_sub(1)
@@ -283,12 +284,13 @@ impl MovableMarkerRun {
     /// nor joined to it.
     fn candidates_of(&self, edge: Dart, degree: u32) -> (Vec<bool>, usize) {
         let map = self.map();
+        let known_end = map.vertex(edge);
         let can_be = |vertex| {
-            map.degree(vertex) == degree && map.unexplored_at(vertex).any(|dart| dart != edge)
+            let besides = u32::from(vertex == known_end);
+            map.degree(vertex) == degree && map.unexplored_count_at(vertex) > besides
         };
         let mut may_be: Vec<_> = map.vertices().map(can_be).collect();
         if !self.points() {
-            let known_end = map.vertex(edge);
             may_be[known_end.at()] = false;
             for far in map.darts_of(known_end).filter_map(|dart| map.opposite(dart)) {
                 may_be[map.vertex(far).at()] = false;

@@ -311,13 +311,14 @@ impl TeamRun {
     /// joined to it. Where the explorer stands it would see the scout.
     fn may_be(&self, edge: Dart, degree: u32) -> Vec<bool> {
         let map = self.map();
+        let known_end = map.vertex(edge);
         let can_be = |vertex| {
-            map.degree(vertex) == degree && map.unexplored_at(vertex).any(|dart| dart != edge)
+            let besides = u32::from(vertex == known_end);
+            map.degree(vertex) == degree && map.unexplored_count_at(vertex) > besides
         };
         let mut may_be: Vec<_> = map.vertices().map(can_be).collect();
         may_be[map.vertex(self.walk.robot).at()] = false;
         if !self.team.shows_heading() {
-            let known_end = map.vertex(edge);
             may_be[known_end.at()] = false;
             for far in map.darts_of(known_end).filter_map(|dart| map.opposite(dart)) {
                 may_be[map.vertex(far).at()] = false;

@@ -7,7 +7,7 @@ use crate::{
 
 /// The markers that the robot carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Carried {
+pub(super) struct CarriedMarkers {
     look: Look,
     /// How many, or which, as a set of bits from the lowest.
     markers: u8,
@@ -30,7 +30,7 @@ pub(super) enum Marks {
     Pointing,
 }
 
-impl Carried {
+impl CarriedMarkers {
     pub(super) fn none() -> Self {
         Self { look: Look::Alike, markers: 0 }
     }
