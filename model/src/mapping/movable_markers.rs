@@ -325,7 +325,7 @@ impl MovableMarkerRun {
     /// The next candidate that the robot has not passed yet.
     fn next_candidate(&mut self) -> Option<Vertex> {
         while let Some(candidate) = self.candidates.last().copied() {
-            if self.ends.iter().any(|end| end.may_be(candidate)) {
+            if self.is_candidate(candidate) {
                 return Some(candidate);
             }
             self.candidates.pop();
@@ -333,7 +333,7 @@ impl MovableMarkerRun {
         None
     }
 
-    /// Goes through the known map to a candidate, or to the first place on the way where markers are found.
+    /// Goes through the known map to a candidate, as long as it is one.
     fn look_for_markers<W: ObservedWorld>(
         &mut self,
         candidate: Vertex,
@@ -342,7 +342,8 @@ impl MovableMarkerRun {
         let way = self.walk.way_to(candidate);
         for &dart in &way {
             let Some((next, perceived)) = self.walk.leave_by(dart, world)? else { break };
-            if self.arrive(next, perceived, world)? {
+            self.arrive(next, perceived, world)?;
+            if !self.is_candidate(candidate) {
                 break;
             }
         }
@@ -350,13 +351,18 @@ impl MovableMarkerRun {
         Ok(())
     }
 
-    /// The robot has come in by a dart of the map. Returns whether it has found markers there; then it carries them.
+    /// Whether a known vertex may be the place of markers that are looked for.
+    fn is_candidate(&self, vertex: Vertex) -> bool {
+        self.ends.iter().any(|end| end.may_be(vertex))
+    }
+
+    /// The robot has come in by a dart of the map. If markers are found there, it picks them up.
     fn arrive<W: ObservedWorld>(
         &mut self,
         pose: Dart,
         perceived: Percept,
         world: &mut W,
-    ) -> Mapped<W, bool> {
+    ) -> Mapped<W> {
         let (vertex, expected) = (self.map().vertex(pose), self.map().unmarked(pose));
         let found =
             self.ends.iter().position(|end| end.may_be(vertex) && end.looks_like(perceived));
@@ -369,7 +375,7 @@ impl MovableMarkerRun {
             if was_candidate {
                 self.report(MovableEvent::NotAt { vertex }, world);
             }
-            return Ok(false);
+            return Ok(());
         };
         self.walk.robot = pose;
         self.report(MovableEvent::Found { vertex }, world);
@@ -391,7 +397,7 @@ impl MovableMarkerRun {
         for end in &mut self.ends {
             end.exclude(vertex);
         }
-        Ok(true)
+        Ok(())
     }
 
     /// The markers that were not found are at new places. The robot goes there again, for the markers.
@@ -436,7 +442,8 @@ impl MovableMarkerRun {
         let Some(second) = marked.next() else { return Some(first.0) };
         from_robot.grow_from(map, here);
         from_robot.grow_whole(map);
-        let hops = |(_, end): &(usize, &UnknownEnd)| from_robot.hops(map.vertex(end.edge));
+        let hops =
+            |(_, end): &(usize, &UnknownEnd)| (from_robot.hops(map.vertex(end.edge)), end.edge);
         [first, second].into_iter().chain(marked).min_by_key(hops).map(|(at, _)| at)
     }
 
@@ -553,8 +560,7 @@ impl MovableMarkerRun {
     fn go_back<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         let edge = self.walk.edge.take().ok_or(InvalidStep::NoEdge)?;
         let perceived = self.walk.go(Door::BACK, world)?;
-        self.arrive(edge, perceived, world)?;
-        Ok(())
+        self.arrive(edge, perceived, world)
     }
 
     /// Goes through the known map to a vertex. Markers that are found on the way are picked up.

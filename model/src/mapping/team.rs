@@ -2,16 +2,16 @@
 //! at once what each of them perceives.
 //!
 //! The other robots are scouts. Each goes to an unexplored edge through the known map, and over it, and stands at its
-//! unknown end. The explorer then looks for them at the known places. Where it meets one, that robot's heading shows the
-//! dart by which it came in. Robots without a front are for worlds without loops and parallel edges: the scout goes back
+//! unknown end. The explorer then looks for them at the known places. Where robots meet, a heading shows the dart by which
+//! the scout came in. Robots without a front are for worlds without loops and parallel edges: the scout goes back
 //! to the known end, and the explorer tries the unexplored darts until it is there, too.
 
 mod rounds;
 
 use super::{
-    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, Mapped,
-    MappingError, MappingEvent, MovableEvent, ObservedWorld, StepPurpose, map_walk::has_walk,
-    movable_markers::handle,
+    Contradiction, CostOrder, Explorer, ExplorerInfo, FACING, InvalidStep, MapDart, MapWalk,
+    Mapped, MappingError, MappingEvent, MovableEvent, ObservedWorld, StepPurpose,
+    map_walk::has_walk, movable_markers::handle,
 };
 use crate::{
     aid::{AidAction, AidKind, team::Team},
@@ -22,51 +22,40 @@ use crate::{
 };
 use rounds::Rounds;
 
-/// The state of a run with a team: the explorer's walk, where the scouts are, and the ends that they have reached.
+/// The state of a run with a team: the explorer's walk, and where the scouts are.
 #[derive(Debug)]
 pub struct TeamRun {
     team: Team,
     walk: MapWalk,
     scouts: Vec<Scout>,
+    /// The scout whose turn it is, if it stands at a known place.
+    turn: usize,
     /// The edges of this round, in the order in which they were followed.
-    ends: Vec<UnknownEnd>,
-    /// The known vertices that were not searched yet. The next one is the last.
-    candidates: Vec<Vertex>,
+    followed: Vec<Dart>,
     back_links: Vec<Dart>,
     rounds: Rounds,
 }
 
-clone_in_place!(TeamRun { team, walk, scouts, ends, candidates, back_links, rounds });
+clone_in_place!(TeamRun { team, walk, scouts, turn, followed, back_links, rounds });
 
 has_walk!(TeamRun);
 
-#[derive(Clone, Copy, Debug)]
-struct Scout {
-    /// The dart of the map by which it came in; while it stands at an unknown end, the known end of that edge.
-    pose: Dart,
-    /// The end of this round at which it stands.
-    end: Option<usize>,
+#[derive(Clone, Debug)]
+enum Scout {
+    /// It came in by this dart of the map.
+    At(Dart),
+    Beyond(UnknownEnd),
 }
 
 /// The unknown end of an edge of the map, where a scout stands.
 #[derive(Clone, Debug)]
 struct UnknownEnd {
     edge: Dart,
-    scout: usize,
     degree: u32,
-    place: Place,
-}
-
-#[derive(Clone, Debug)]
-enum Place {
     /// For each known vertex, whether it may be the place.
-    Sought(Vec<bool>),
-    /// It is the place of the earlier end of this round with this number, whose scout came in by the dart this many doors
-    /// clockwise of this one's, if that is seen.
-    With(usize, Option<Door>),
-    Known(Vertex),
-    /// The edge leads to this dart.
-    At(Dart),
+    may_be: Vec<bool>,
+    /// The place, once it is known.
+    place: Option<Vertex>,
 }
 
 impl Default for TeamRun {
@@ -82,8 +71,8 @@ impl TeamRun {
             team,
             walk: MapWalk::default(),
             scouts: Vec::new(),
-            ends: Vec::new(),
-            candidates: Vec::new(),
+            turn: 0,
+            followed: Vec::new(),
             back_links: Vec::new(),
             rounds: Rounds::default(),
         }
@@ -119,44 +108,47 @@ impl Explorer for TeamRun {
 
     fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         self.walk.clear();
-        self.ends.clear();
-        self.candidates.clear();
+        self.followed.clear();
         self.back_links.clear();
+        self.turn = 0;
         let scouts = usize::from(self.team.robots()) - 1;
         self.rounds = Rounds::of(scouts);
         self.scouts.clear();
-        self.scouts.resize(scouts, Scout { pose: super::FACING, end: None });
+        self.scouts.resize(scouts, Scout::At(FACING));
         let percept = world.percept().map_err(MappingError::World)?;
         if percept.degree == 0 {
             return Err(Contradiction::StartWithoutMarker { perceived: percept }.into());
         }
         self.walk.begin(percept, world)?;
-        if percept != self.expected(self.walk.robot, percept) {
+        if percept != self.expected(percept) {
             return Err(Contradiction::StartWithoutMarker { perceived: percept }.into());
         }
         Ok(())
     }
 
     fn choose(&mut self) -> Result<Option<Dart>, InvalidStep> {
-        let from = self.scouts.iter().find(|scout| scout.end.is_none()).map(|scout| scout.pose);
-        let Self { walk, ends, .. } = self;
-        let is_ahead = |dart: Dart| ends.iter().all(|end| !end.has(dart));
-        Ok(from.and_then(|from| walk.nearest_unexplored_from(from, is_ahead)))
+        let Some((_, pose)) = self.next_scout() else { return Ok(None) };
+        let Self { walk, scouts, .. } = self;
+        let is_ahead = |dart: Dart| scouts.iter().all(|scout| !scout.is_beyond(dart));
+        Ok(walk.nearest_unexplored_from(pose, is_ahead))
     }
 
     fn choices(&mut self) -> Result<Vec<Dart>, InvalidStep> {
-        let is_ahead = |dart: &Dart| self.ends.iter().all(|end| !end.has(*dart));
+        if self.next_scout().is_none() {
+            return Ok(Vec::new());
+        }
+        let is_ahead = |dart: &Dart| self.scouts.iter().all(|scout| !scout.is_beyond(*dart));
         Ok(self.map().unexplored().filter(is_ahead).collect())
     }
 
     /// A scout follows an edge. When all stand at unknown ends, or no other edge is left, the explorer looks for them.
     fn step<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
-        self.scout(edge, world)?;
+        self.send_over(edge, world)?;
         if self.choose()?.is_none() {
             self.search(world)?;
-            self.add_new_places(world)?;
-            self.close_loops(world)?;
-            self.ends.clear();
+            self.validate_back_links(world)?;
+            self.followed.clear();
+            self.turn = 0;
             self.rounds.all_know();
         }
         Ok(())
@@ -194,39 +186,47 @@ impl Explorer for TeamRun {
 }
 
 impl TeamRun {
-    /// Sends a scout through the map and over an edge to its unknown end.
-    fn scout<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
-        let is_open = self.map().is_unexplored(edge);
-        let scout = self.scouts.iter().position(|scout| scout.end.is_none());
-        let (Some(scout), true) = (scout, is_open && self.ends.iter().all(|end| !end.has(edge)))
-        else {
-            return Err(InvalidStep::NotUnexplored(edge).into());
-        };
+    /// The scout whose turn it is, or the next one that stands at a known place, and its pose.
+    fn next_scout(&self) -> Option<(usize, Dart)> {
+        let count = self.scouts.len();
+        let from_turn = (self.turn..count).chain(0..self.turn);
+        from_turn.into_iter().find_map(|at| match self.scouts[at] {
+            Scout::At(pose) => Some((at, pose)),
+            Scout::Beyond(_) => None,
+        })
+    }
+
+    /// Sends a scout through the map and over an edge to its unknown end; not over it, if that becomes known on the way.
+    fn send_over<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
+        let is_ahead = self.scouts.iter().all(|scout| !scout.is_beyond(edge));
+        let next = self.next_scout().filter(|_| is_ahead && self.map().is_unexplored(edge));
+        let (scout, mut pose) = next.ok_or(InvalidStep::NotUnexplored(edge))?;
         let known_end = self.map().vertex(edge);
-        for dart in self.walk.way_between(self.scouts[scout].pose, known_end, Vec::new()) {
-            let door = self.map().door(self.scouts[scout].pose, dart);
+        for dart in self.walk.way_between(pose, known_end, Vec::new()) {
+            let door = self.map().door(pose, dart);
             let Some(next) = self.map().opposite(dart) else { break };
             let percept = self.send(scout, door, world)?;
-            self.scouts[scout].pose = next;
-            self.compare(percept)?;
+            pose = next;
+            self.scouts[scout] = Scout::At(pose);
+            self.notice(percept, world)?;
         }
-        let door = self.map().door(self.scouts[scout].pose, edge);
+        if !self.map().is_unexplored(edge) {
+            return Ok(());
+        }
+        let door = self.map().door(pose, edge);
         let percept = self.send(scout, door, world)?;
-        self.scouts[scout] = Scout { pose: edge, end: Some(self.ends.len()) };
-        let (degree, place) = self.place_seen(edge, scout, percept)?;
-        let candidates = match &place {
-            Place::Sought(may_be) => may_be.iter().filter(|may_be| **may_be).count(),
-            _ => 1,
-        };
+        self.turn = (scout + 1) % self.scouts.len();
+        let (degree, is_alone) = self.seen_beyond(scout, percept)?;
+        let may_be = if is_alone { self.may_be(scout, edge, degree) } else { Vec::new() };
+        let candidates = may_be.iter().filter(|may_be| **may_be).count();
+        self.scouts[scout] = Scout::Beyond(UnknownEnd { edge, degree, may_be, place: None });
+        self.followed.push(edge);
         let at_end = Percept { degree, sighting: percept.sighting };
         self.report(MovableEvent::Arrived { edge, percept: at_end, candidates }, world);
-        self.ends.push(UnknownEnd { edge, scout, degree, place });
-        self.compare(percept)?;
-        if candidates == 0 || InjectedFlaw::EveryPlaceIsNew.is_present() {
-            self.add_place(self.ends.len() - 1, world)?;
-            self.ends.pop();
+        if is_alone && (candidates == 0 || InjectedFlaw::EveryPlaceIsNew.is_present()) {
+            self.add_place(scout, world)?;
         }
-        Ok(())
+        self.notice(percept, world)
     }
 
     /// Sends a scout through a door, and returns what the explorer perceives then.
@@ -244,72 +244,27 @@ impl TeamRun {
         world.percept().map_err(MappingError::World)
     }
 
-    /// What is known at once of the place where a scout has come in, and its degree.
-    fn place_seen(
-        &self,
-        edge: Dart,
-        scout: usize,
-        percept: Percept,
-    ) -> Result<(u32, Place), Contradiction> {
+    /// The number of doors that a scout perceives beyond an edge, and whether no other robot is there.
+    fn seen_beyond(&self, scout: usize, percept: Percept) -> Result<(u32, bool), Contradiction> {
         let impossible = Contradiction::Impossible { perceived: percept };
         let Sighting::Team(TeamView(seen)) = percept.sighting else { return Err(impossible) };
-        let robot = self.walk.robot;
-        let at = |pose: Dart, door: Door| {
-            let dart = self.turned(pose, door);
-            let is_free = self.map().is_unexplored(dart) && dart != edge;
-            is_free.then_some(Place::At(dart)).ok_or(impossible)
-        };
-        let degree = |dart| self.map().degree(self.map().vertex(dart));
-        // Another scout is seen there, this many doors clockwise.
-        let with = |other: usize, door: Option<Door>| match (self.scouts[other], door) {
-            (Scout { end: Some(end), .. }, _) => {
-                Ok((self.ends[end].degree, Place::With(end, door)))
-            }
-            (Scout { pose, end: None }, Some(door)) => {
-                Ok((degree(pose), at(pose, door.inverse(degree(pose)))?))
-            }
-            (Scout { pose, end: None }, None) => {
-                Ok((degree(pose), Place::Known(self.map().vertex(pose))))
-            }
-        };
-        match (seen[scout], scout, seen[1]) {
-            (OtherRobot::HereAlong(door), ..) => Ok((degree(robot), at(robot, door)?)),
-            (OtherRobot::Here, ..) => Ok((degree(robot), Place::Known(self.map().vertex(robot)))),
-            // The third robot came in by the dart so many doors clockwise of the second one's.
-            (OtherRobot::WithSecondAlong(door), ..) => {
-                let second = self.scouts[0];
-                match second.end {
-                    Some(end) => {
-                        let degree = self.ends[end].degree;
-                        Ok((degree, Place::With(end, Some(door.inverse(degree)))))
-                    }
-                    None => Ok((degree(second.pose), at(second.pose, door)?)),
-                }
-            }
-            (OtherRobot::WithSecond, ..) => with(0, None),
-            (OtherRobot::Elsewhere { .. }, 0, OtherRobot::WithSecondAlong(door)) => {
-                with(1, Some(door))
-            }
-            (OtherRobot::Elsewhere { .. }, 0, OtherRobot::WithSecond) => with(1, None),
-            (OtherRobot::Elsewhere { degree }, ..) => {
-                Ok((degree, Place::Sought(self.may_be(edge, degree))))
-            }
-            (OtherRobot::Absent, ..) => Err(impossible),
+        let with_second =
+            matches!(seen[1], OtherRobot::WithSecond | OtherRobot::WithSecondAlong(_));
+        match (seen[scout], seen[0]) {
+            (OtherRobot::Here | OtherRobot::HereAlong(_), _) => Ok((percept.degree, false)),
+            (OtherRobot::WithSecond | OtherRobot::WithSecondAlong(_), second) => match second {
+                OtherRobot::Elsewhere { degree } => Ok((degree, false)),
+                _ => Err(impossible),
+            },
+            (OtherRobot::Elsewhere { degree }, _) => Ok((degree, !(scout == 0 && with_second))),
+            (OtherRobot::Absent, _) => Err(impossible),
         }
-    }
-
-    /// The dart so many doors clockwise of another.
-    fn turned(&self, dart: Dart, door: Door) -> Dart {
-        let map = self.map();
-        let vertex = map.vertex(dart);
-        let index = (map.index(dart) + door.0) % map.degree(vertex);
-        map.dart(vertex, index).unwrap_or(dart)
     }
 
     /// For each known vertex, whether it can be the unknown end of an edge. It looks like it, and has an unexplored dart,
     /// besides this one. Without headings, in a world without loops and parallel edges, it is neither the known end nor
-    /// joined to it. Where the explorer stands it would see the scout.
-    fn may_be(&self, edge: Dart, degree: u32) -> Vec<bool> {
+    /// joined to it. Where another robot is, that one would see the scout.
+    fn may_be(&self, scout: usize, edge: Dart, degree: u32) -> Vec<bool> {
         let map = self.map();
         let known_end = map.vertex(edge);
         let can_be = |vertex| {
@@ -317,253 +272,270 @@ impl TeamRun {
             map.degree(vertex) == degree && map.unexplored_count_at(vertex) > besides
         };
         let mut may_be: Vec<_> = map.vertices().map(can_be).collect();
-        may_be[map.vertex(self.walk.robot).at()] = false;
         if !self.team.shows_heading() {
             may_be[known_end.at()] = false;
             for far in map.darts_of(known_end).filter_map(|dart| map.opposite(dart)) {
                 may_be[map.vertex(far).at()] = false;
             }
         }
-        for scout in self.scouts.iter().filter(|scout| scout.end.is_none()) {
-            may_be[map.vertex(scout.pose).at()] = false;
+        let others = (0..self.scouts.len()).filter(|other| *other != scout).map(Robot::Scout);
+        for other in [Robot::Explorer].into_iter().chain(others) {
+            if let Some(vertex) = self.place(other) {
+                may_be[vertex.at()] = false;
+            }
         }
         may_be
     }
 
+    /// The vertex where a robot is, if that is known: the explorer, or one of the scouts.
+    fn place(&self, robot: Robot) -> Option<Vertex> {
+        match robot {
+            Robot::Explorer => Some(self.map().vertex(self.walk.robot)),
+            Robot::Scout(at) => match &self.scouts[at] {
+                Scout::At(pose) => Some(self.map().vertex(*pose)),
+                Scout::Beyond(end) => end.place,
+            },
+        }
+    }
+
+    /// What follows from who is with whom, until nothing new does.
+    fn notice<W: ObservedWorld>(&mut self, percept: Percept, world: &mut W) -> Mapped<W> {
+        let mut is_new = true;
+        while is_new {
+            is_new = false;
+            for scout in 0..self.scouts.len() {
+                is_new |= self.notice_of(scout, percept, world)?;
+            }
+        }
+        let pose = self.walk.robot;
+        let expected = self.expected(percept);
+        Ok(self.walk.arrive(pose, expected, percept)?)
+    }
+
+    /// What follows about the end of an edge where a scout stands. Returns whether its place or its dart was not known.
+    fn notice_of<W: ObservedWorld>(
+        &mut self,
+        scout: usize,
+        percept: Percept,
+        world: &mut W,
+    ) -> Mapped<W, bool> {
+        let Scout::Beyond(UnknownEnd { edge, place: known, .. }) = self.scouts[scout] else {
+            return Ok(false);
+        };
+        if let Some(dart) = self.map().opposite(edge) {
+            self.scouts[scout] = Scout::At(dart);
+            return Ok(true);
+        }
+        let (mut place, mut entry) = (known, None);
+        let others = (0..self.scouts.len()).filter(|other| *other != scout).map(Robot::Scout);
+        for other in [Robot::Explorer].into_iter().chain(others) {
+            let Some(vertex) = self.place(other) else { continue };
+            let Some(doors) = meeting(scout, other, percept) else {
+                if let Scout::Beyond(end) = &mut self.scouts[scout] {
+                    end.exclude(vertex);
+                }
+                continue;
+            };
+            place = Some(vertex);
+            let pose = match other {
+                Robot::Explorer => Some(self.walk.robot),
+                Robot::Scout(at) => self.scouts[at].pose(),
+            };
+            entry = entry.or(pose.zip(doors).map(|(pose, doors)| self.turned(pose, doors)));
+        }
+        if let (Some(vertex), None) = (place, entry) {
+            let mut darts = self.map().unexplored_at(vertex).filter(|dart| *dart != edge);
+            entry = darts.next().filter(|_| darts.next().is_none());
+        }
+        if let Scout::Beyond(end) = &mut self.scouts[scout] {
+            end.place = place;
+        }
+        let Some(entry) = entry else { return Ok(known.is_none() && place.is_some()) };
+        self.walk.edge = Some(edge);
+        self.walk
+            .close_loop(entry, world)
+            .map_err(|_| Contradiction::Impossible { perceived: percept })?;
+        self.scouts[scout] = Scout::At(entry);
+        Ok(true)
+    }
+
+    /// The dart so many doors clockwise of another, and then so many counterclockwise.
+    fn turned(&self, dart: Dart, (clockwise, back): (Door, Door)) -> Dart {
+        let map = self.map();
+        let vertex = map.vertex(dart);
+        let degree = map.degree(vertex);
+        let index = map.index(dart) + clockwise.0 % degree + (degree - back.0 % degree);
+        map.dart(vertex, index % degree).unwrap_or(dart)
+    }
+
     /// The explorer looks for the scouts at all known vertices where they can stand, in the order in which a depth-first
-    /// walk of the shortest paths from it meets them.
+    /// walk of the shortest paths from it meets them. The places of scouts that it does not meet are new.
     fn search<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         let here = self.map().vertex(self.walk.robot);
-        let Self { walk: MapWalk { map, from_robot, .. }, candidates, .. } = self;
-        candidates.clear();
+        let Self { walk: MapWalk { map, from_robot, .. }, .. } = self;
+        let mut candidates = Vec::new();
         from_robot.grow_from(map, here);
         from_robot.grow_whole(map);
-        from_robot.preorder(map, candidates);
-        candidates.reverse();
-        while let Some(candidate) = self.candidates.last().copied() {
-            if !self.ends.iter().any(|end| end.may_be(candidate)) {
-                self.candidates.pop();
-                continue;
+        from_robot.preorder(map, &mut candidates);
+        for candidate in candidates {
+            if self.is_candidate(candidate) {
+                self.look_for_scouts(candidate, world)?;
             }
-            let way = self.walk.way_to(candidate);
-            for &dart in &way {
-                let Some((next, perceived)) = self.walk.leave_by(dart, world)? else { break };
-                self.rounds.explorer_moved();
-                if self.arrive(next, perceived, world)? {
-                    break;
-                }
-            }
-            self.walk.way = way;
             if InjectedFlaw::OneCandidateSearched.is_present() {
                 break;
             }
         }
+        for scout in 0..self.scouts.len() {
+            if matches!(&self.scouts[scout], Scout::Beyond(end) if end.place.is_none()) {
+                self.report(MovableEvent::NotFound, world);
+                self.add_place(scout, world)?;
+            }
+        }
         Ok(())
     }
 
-    /// The explorer has come in by a dart of the map. Returns whether it has met scouts that it was looking for.
-    fn arrive<W: ObservedWorld>(
-        &mut self,
-        pose: Dart,
-        perceived: Percept,
-        world: &mut W,
-    ) -> Mapped<W, bool> {
+    /// Whether a known vertex may be where a scout stands that is looked for.
+    fn is_candidate(&self, vertex: Vertex) -> bool {
+        self.scouts.iter().any(|scout| match scout {
+            Scout::Beyond(end) => end.place.is_none() && end.may_be.get(vertex.at()) == Some(&true),
+            Scout::At(_) => false,
+        })
+    }
+
+    /// Goes through the known map to a candidate, as long as it is one.
+    fn look_for_scouts<W: ObservedWorld>(&mut self, candidate: Vertex, world: &mut W) -> Mapped<W> {
+        let way = self.walk.way_to(candidate);
+        for &dart in &way {
+            self.explorer_takes(dart, world)?;
+            if !self.is_candidate(candidate) {
+                break;
+            }
+        }
+        self.walk.way = way;
+        Ok(())
+    }
+
+    /// The explorer takes a dart of the known map.
+    fn explorer_takes<W: ObservedWorld>(&mut self, dart: Dart, world: &mut W) -> Mapped<W> {
+        let Some((pose, percept)) = self.walk.leave_by(dart, world)? else { return Ok(()) };
+        self.rounds.explorer_moved();
         let vertex = self.map().vertex(pose);
-        let Sighting::Team(TeamView(seen)) = perceived.sighting else {
-            return Err(Contradiction::Impossible { perceived }.into());
-        };
-        if perceived.degree != self.map().degree(vertex) {
-            let expected = Percept { degree: self.map().degree(vertex), ..perceived };
-            self.walk.arrive(pose, expected, perceived)?;
+        let sought = |scout: &Scout| matches!(scout, Scout::Beyond(end) if end.place.is_none());
+        let before: Vec<_> = self.scouts.iter().map(sought).collect();
+        let was_candidate = self.is_candidate(vertex);
+        for (scout, was_sought) in before.iter().enumerate() {
+            if *was_sought && was_candidate {
+                self.rounds.waited_for(scout);
+            }
         }
         self.walk.robot = pose;
-        let (mut found, mut was_candidate) = (false, false);
-        for at in 0..self.ends.len() {
-            let UnknownEnd { edge, scout, .. } = self.ends[at];
-            if !self.ends[at].may_be(vertex) {
-                continue;
-            }
-            self.rounds.waited_for(scout);
-            let place = match seen[scout] {
-                OtherRobot::Here => Some(Place::Known(vertex)),
-                OtherRobot::HereAlong(door) => {
-                    let dart = self.turned(pose, door);
-                    if dart == edge || !self.map().is_unexplored(dart) {
-                        return Err(Contradiction::Impossible { perceived }.into());
-                    }
-                    Some(Place::At(dart))
-                }
-                _ => None,
-            };
-            match place {
-                Some(place) => {
-                    self.ends[at].place = place;
-                    found = true;
-                }
-                None => was_candidate |= self.ends[at].exclude(vertex),
-            }
-        }
-        self.compare(perceived)?;
-        if found {
+        let is_found = (0..self.scouts.len())
+            .any(|scout| before[scout] && meeting(scout, Robot::Explorer, percept).is_some());
+        if is_found {
             self.report(MovableEvent::Found { vertex }, world);
         } else if was_candidate {
             self.report(MovableEvent::NotAt { vertex }, world);
         }
-        Ok(found)
+        self.notice(percept, world)
     }
 
-    /// The scouts that were not found stand at new places.
-    fn add_new_places<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
-        for at in 0..self.ends.len() {
-            if matches!(self.ends[at].place, Place::Sought(_)) {
-                self.report(MovableEvent::NotFound, world);
-                self.add_place(at, world)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn add_place<W: ObservedWorld>(&mut self, at: usize, world: &mut W) -> Mapped<W> {
-        let UnknownEnd { edge, scout, degree, .. } = self.ends[at];
-        let vertex = self.walk.add_place_behind(edge, degree, world)?;
-        let pose = self.map().first_dart(vertex);
-        self.scouts[scout] = Scout { pose, end: None };
-        self.ends[at].place = Place::At(pose);
-        Ok(())
-    }
-
-    /// Closes the loops of this round.
-    fn close_loops<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
-        for at in 0..self.ends.len() {
-            let UnknownEnd { edge, scout, .. } = self.ends[at];
-            // It may lead to a new place, or be the other end of an edge before it.
-            let known = self.map().opposite(edge);
-            let other = match (known, self.place_of(at)) {
-                (Some(other), _) | (None, Some(Place::At(other))) => other,
-                (None, Some(Place::Known(vertex))) => self.validate_back_link(at, vertex, world)?,
-                (None, _) => return Err(InvalidStep::NoEdge.into()),
-            };
-            if self.scouts[scout].end == Some(at) {
-                self.scouts[scout] = Scout { pose: other, end: None };
-            }
-            if known.is_none() {
-                self.walk.edge = Some(edge);
-                self.walk.close_loop(other, world)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Where an end of this round is, after all scouts were found or have added their places.
-    fn place_of(&self, at: usize) -> Option<Place> {
-        let Place::With(earlier, along) = self.ends.get(at)?.place else {
-            return Some(self.ends[at].place.clone());
+    /// A scout stands at a new place.
+    fn add_place<W: ObservedWorld>(&mut self, scout: usize, world: &mut W) -> Mapped<W> {
+        let Scout::Beyond(UnknownEnd { edge, degree, .. }) = self.scouts[scout] else {
+            return Ok(());
         };
-        match (&self.ends.get(earlier)?.place, along) {
-            (Place::At(dart), Some(door)) => {
-                let degree = self.map().degree(self.map().vertex(*dart));
-                Some(Place::At(self.turned(*dart, door.inverse(degree))))
+        let vertex = self.walk.add_place_behind(edge, degree, world)?;
+        self.scouts[scout] = Scout::At(self.map().first_dart(vertex));
+        self.rounds.all_know();
+        let percept = world.percept().map_err(MappingError::World)?;
+        self.notice(percept, world)
+    }
+
+    /// Closes the loops of this round whose darts are not known, in the order in which their edges were followed.
+    fn validate_back_links<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        for at in 0..self.followed.len() {
+            let edge = self.followed[at];
+            let scout = self.scouts.iter().position(|scout| scout.is_beyond(edge));
+            if let Some(scout) = scout
+                && let Some(vertex) = self.place(Robot::Scout(scout))
+            {
+                self.validate_back_link(scout, edge, vertex, world)?;
             }
-            (Place::At(dart), None) => Some(Place::Known(self.map().vertex(*dart))),
-            (place, _) => Some(place.clone()),
         }
+        Ok(())
     }
 
     /// Back-link validation: which unexplored dart of the known vertex is the other end of the edge? The scout goes
     /// back to the known end, and the explorer tries the darts until it meets the scout there.
     fn validate_back_link<W: ObservedWorld>(
         &mut self,
-        at: usize,
+        scout: usize,
+        edge: Dart,
         vertex: Vertex,
         world: &mut W,
-    ) -> Mapped<W, Dart> {
-        let UnknownEnd { edge, scout, .. } = self.ends[at];
-        let marked = self.map().vertex(edge);
-        self.back_links.clear();
-        self.back_links.extend(self.walk.map.unexplored_at(vertex).rev());
-        match self.back_links[..] {
-            [only] => return Ok(only),
-            [.., first] if InjectedFlaw::FirstDartIsIt.is_present() => return Ok(first),
-            _ => {}
-        }
+    ) -> Mapped<W> {
         self.rounds.all_know();
-        let percept = self.send(scout, Door::BACK, world)?;
-        self.scouts[scout] = Scout { pose: edge, end: None };
-        self.compare(percept)?;
+        self.send(scout, Door::BACK, world)?;
+        self.scouts[scout] = Scout::At(edge);
         let way = self.walk.way_to(vertex);
         for &dart in &way {
-            let Some((next, perceived)) = self.walk.leave_by(dart, world)? else { break };
-            self.rounds.explorer_moved();
-            self.arrive(next, perceived, world)?;
+            self.explorer_takes(dart, world)?;
         }
         self.walk.way = way;
+        self.back_links.clear();
+        self.back_links.extend(self.walk.map.unexplored_at(vertex).rev());
         while let Some(dart) = self.back_links.pop() {
             let door = self.map().door(self.walk.robot, dart);
             let percept = self.walk.go(door, world)?;
             self.rounds.explorer_moved();
             self.rounds.waited_for(scout);
-            let Sighting::Team(TeamView(seen)) = percept.sighting else { break };
-            if seen[scout] == OtherRobot::Here {
-                self.arrive(edge, percept, world)?;
+            let is_met = meeting(scout, Robot::Explorer, percept).is_some();
+            if is_met || InjectedFlaw::FirstDartIsIt.is_present() {
+                self.walk.edge = Some(edge);
+                self.walk.close_loop(dart, world)?;
+                self.walk.robot = edge;
                 self.report(MovableEvent::Behind { dart }, world);
-                return Ok(dart);
+                return self.notice(percept, world);
             }
             let back = self.walk.go(Door::BACK, world)?;
             self.rounds.explorer_moved();
-            self.arrive(dart, back, world)?;
+            self.walk.robot = dart;
+            self.walk.arrive(dart, self.expected(back), back)?;
             self.report(MovableEvent::NotBehind { dart, percept }, world);
         }
-        Err(Contradiction::NoBackLink { vertex, marked }.into())
+        Err(Contradiction::NoBackLink { vertex, marked: self.map().vertex(edge) }.into())
     }
 
-    /// What the explorer perceives must agree with where the robots are.
-    fn compare(&self, perceived: Percept) -> Result<(), Contradiction> {
-        let pose = self.walk.robot;
-        let expected = self.expected(pose, perceived);
-        let (vertex, index) = (self.map().vertex(pose), self.map().index(pose));
-        let agrees = expected == perceived;
-        agrees.then_some(()).ok_or(Contradiction::KnownPlace { vertex, index, expected, perceived })
-    }
-
-    /// The percept expected of the explorer at a dart. Of scouts whose places are not known, it is what is perceived.
-    fn expected(&self, pose: Dart, perceived: Percept) -> Percept {
+    /// The percept expected of the explorer. Of scouts whose places are not known, it is what is perceived.
+    fn expected(&self, perceived: Percept) -> Percept {
         let map = self.map();
-        let vertex = map.vertex(pose);
+        let pose = self.walk.robot;
+        let degree = map.degree(map.vertex(pose));
         let Sighting::Team(TeamView(mut seen)) = perceived.sighting else {
-            return Percept {
-                degree: map.degree(vertex),
-                sighting: Sighting::Team(TeamView::default()),
-            };
+            return Percept { degree, sighting: Sighting::Team(TeamView::default()) };
         };
         let along = |from: Dart, to: Dart| self.team.shows_heading().then(|| map.door(from, to));
-        let dart = |scout: &Scout| match scout.end {
-            None => Some(scout.pose),
-            Some(end) => match self.ends.get(end)?.place {
-                Place::At(dart) => Some(dart),
-                _ => None,
-            },
-        };
-        let darts: Vec<_> = self.scouts.iter().map(dart).collect();
         for (at, shown) in seen.iter_mut().enumerate() {
-            let Some(&place) = darts.get(at) else {
+            let Some(scout) = self.scouts.get(at) else {
                 *shown = OtherRobot::Absent;
                 continue;
             };
-            let Some(dart) = place else { continue };
+            let Some(dart) = scout.pose() else { continue };
             let there = map.vertex(dart);
-            *shown = if there == vertex {
+            // Whether the second robot is where the third one is; none if that is not known.
+            let second = (at == 1).then(|| self.scouts[0].pose());
+            *shown = if there == map.vertex(pose) {
                 along(pose, dart).map_or(OtherRobot::Here, OtherRobot::HereAlong)
             } else {
-                match (at, darts[0]) {
-                    (1, Some(second)) if map.vertex(second) == there => along(second, dart)
+                match second {
+                    Some(None) => continue,
+                    Some(Some(second)) if map.vertex(second) == there => along(second, dart)
                         .map_or(OtherRobot::WithSecond, OtherRobot::WithSecondAlong),
-                    // The second robot may be there, too.
-                    (1, None) if *shown != OtherRobot::Absent => continue,
                     _ => OtherRobot::Elsewhere { degree: map.degree(there) },
                 }
             };
         }
-        Percept { degree: map.degree(vertex), sighting: Sighting::Team(TeamView(seen)) }
+        Percept { degree, sighting: Sighting::Team(TeamView(seen)) }
     }
 
     fn report(&self, event: MovableEvent, world: &mut impl ObservedWorld) {
@@ -571,21 +543,51 @@ impl TeamRun {
     }
 }
 
+/// A robot that may be where a scout is.
+#[derive(Clone, Copy)]
+enum Robot {
+    Explorer,
+    /// The scout with this number, from 0.
+    Scout(usize),
+}
+
+/// Whether a scout is where another robot is. If so, and if headings are seen, its entry dart is so many doors clockwise
+/// of the other's, and then so many counterclockwise.
+fn meeting(scout: usize, other: Robot, percept: Percept) -> Option<Option<(Door, Door)>> {
+    use OtherRobot::{Here, HereAlong, WithSecond, WithSecondAlong};
+    let Sighting::Team(TeamView(seen)) = percept.sighting else { return None };
+    match (other, seen.get(scout)?) {
+        (Robot::Explorer, Here) => Some(None),
+        (Robot::Explorer, HereAlong(door)) => Some(Some((*door, Door::BACK))),
+        (Robot::Explorer, _) => None,
+        (Robot::Scout(other), one) => match (one, seen.get(other)?, seen[1]) {
+            (Here, Here, _) => Some(None),
+            (HereAlong(one), HereAlong(other), _) => Some(Some((*one, *other))),
+            (_, _, WithSecond) => Some(None),
+            (_, _, WithSecondAlong(door)) if scout == 1 => Some(Some((door, Door::BACK))),
+            (_, _, WithSecondAlong(door)) => Some(Some((Door::BACK, door))),
+            _ => None,
+        },
+    }
+}
+
+impl Scout {
+    /// The dart by which it came in, if that is known.
+    fn pose(&self) -> Option<Dart> {
+        if let Self::At(pose) = self { Some(*pose) } else { None }
+    }
+
+    /// Whether it stands at the unknown end of this edge.
+    fn is_beyond(&self, dart: Dart) -> bool {
+        matches!(self, Self::Beyond(end) if end.edge == dart)
+    }
+}
+
 impl UnknownEnd {
-    /// Whether a dart is an end of its edge.
-    fn has(&self, dart: Dart) -> bool {
-        dart == self.edge || matches!(self.place, Place::At(other) if other == dart)
-    }
-
-    fn may_be(&self, vertex: Vertex) -> bool {
-        matches!(&self.place, Place::Sought(may_be) if may_be.get(vertex.at()) == Some(&true))
-    }
-
-    /// It is not this vertex. Returns whether it could be.
-    fn exclude(&mut self, vertex: Vertex) -> bool {
-        match &mut self.place {
-            Place::Sought(may_be) => may_be.get_mut(vertex.at()).is_some_and(std::mem::take),
-            _ => false,
+    /// It is not this vertex.
+    fn exclude(&mut self, vertex: Vertex) {
+        if let Some(may_be) = self.may_be.get_mut(vertex.at()) {
+            *may_be = false;
         }
     }
 }
