@@ -3,7 +3,7 @@
 
 use std::{
     cmp::Reverse,
-    collections::{BTreeMap, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap},
     process::Command,
 };
 
@@ -11,10 +11,12 @@ use serde_json::{Value, json};
 use toposlam_model::{
     aid::{AIDS, AidKind, FEW_STATES},
     ambiguity::Comparison,
+    check::{Check, RunChoices, Shard, Tally},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     folding::{FoldedTrail, certificate_length, fold},
     format::world_file,
+    mapping::MappingAlgorithm,
     percept::{Door, Percept, Sighting},
 };
 
@@ -225,4 +227,30 @@ fn walks_are_as_long(class: Class, edges: usize) {
         return;
     };
     assert_eq!(found.concat(), oracle, "{class}");
+}
+
+/// The moves on every start, of each aid that moves, but for the short strings, with which the folding explorer maps.
+#[test]
+fn explorers_with_aids_that_move_make_as_many_moves() {
+    for (class, edges) in [(Class::Simple, 6), (Class::Multigraph, 4)] {
+        let Some(oracle) = oracle(&format!("moving.py {class} {edges}")) else { return };
+        let is_compared = |known: &MappingAlgorithm| {
+            let is_short =
+                matches!(known.aid(), AidKind::String(string) if string.length().is_some());
+            known.aid().moves() && !is_short && (class.is_simple() || !known.needs_simple())
+        };
+        let mut found = BTreeSet::new();
+        for algorithm in MappingAlgorithm::all().filter(is_compared) {
+            for edges in 1..=edges {
+                let check = Check::new(class, edges, Shard::WHOLE).unwrap();
+                let tally = algorithm.sweep(&check, RunChoices::Default, &());
+                let Tally { starts, moves_total, .. } = &tally;
+                let most = tally.moves_max();
+                let aid = algorithm.aid().name();
+                found.insert(format!("{aid} {class} {edges} {starts} {moves_total} {most}"));
+            }
+        }
+        let expected: BTreeSet<_> = oracle.lines().map(str::to_owned).collect();
+        assert_eq!(found, expected);
+    }
 }

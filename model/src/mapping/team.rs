@@ -211,6 +211,7 @@ impl TeamRun {
             self.notice(percept, world)?;
         }
         if !self.map().is_unexplored(edge) {
+            self.turn = scout;
             return Ok(());
         }
         let door = self.map().door(pose, edge);
