@@ -492,11 +492,13 @@ def test_what_is_not_a_shard(shard):
 
 def test_the_algorithms_of_the_package():
     world = ts.World.load("worlds/shape-8.toml")
-    for algorithm in ["algorithm1", "folding", "movable"]:
+    moving = ["movable", "movable-2-distinct", "movable-directional", "string", "string-1", "team-3"]
+    for algorithm in ["algorithm1", "folding", *moving]:
         run = ts.explore(world, algorithm=algorithm)
         assert run.map.is_isomorphic(world)
-        assert run.moves == sum(isinstance(action, int) for action in run.actions)
-        assert algorithm == "movable" or run.moves >= run.certificate
+        is_move = [isinstance(action, int) or action.startswith("send") for action in run.actions]
+        assert run.moves == sum(is_move)
+        assert algorithm in moving or run.moves >= run.certificate
         assert run.story.startswith("World shape-8.")
         assert "<svg" in run._repr_svg_()
     with pytest.raises(errors.UnknownAlgorithmError, match="`magic` is not an algorithm"):
@@ -510,6 +512,8 @@ def test_the_algorithms_of_the_package():
     with pytest.raises(errors.SizeError):
         ts.explore(world, max_darts="many")
     assert ts.explore(world, algorithm="movable").certificate is None
+    torus = ts.World.load("worlds/theta-torus.toml")
+    assert ts.explore(torus, algorithm="string").map.is_isomorphic(torus)
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,8 @@ def explore(
     max_moves: int | None = None,
     seconds: float | None = None,
 ) -> Run:
-    """Maps a world with `"algorithm1"`, `"folding"`, `"movable"`, or with an explorer of your own.
+    """Maps a world with `"algorithm1"`, `"folding"`, the explorer of a marking aid that moves (`"movable"`,
+    `"string"`, `"team-2"` and so on; `"string"` is as long as it takes), or with an explorer of your own.
 
     `marker`, the kind of marker of the robot (`"directional"`) or a function (see `MarkerFunction`),
     `max_moves` (100,000 moves, pick-ups and drops) and `seconds` (10; `math.inf` is no limit) are for
@@ -94,7 +95,7 @@ def explore(
     return Run(
         world=world,
         algorithm=algorithm,
-        marker="movable" if algorithm == "movable" else "directional",
+        marker="directional" if algorithm in ("algorithm1", "folding") else algorithm,
         moves=found["moves"],
         actions=tuple(found["actions"]),
         map=map_,
