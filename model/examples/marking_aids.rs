@@ -33,7 +33,9 @@ fn main() {
         println!();
     };
     print!("{:<34}", "junctions, at most");
-    sizes.iter().for_each(|junctions| print!("{junctions:>18}"));
+    for junctions in sizes {
+        print!("{junctions:>18}");
+    }
     println!();
     line("edges", &|graph| graph.edge_count() as u64);
     line("certificate", &|graph| certificate_length(graph, Dart(0)) as u64);

@@ -259,19 +259,12 @@ impl MovableMarkerRun {
             Place::Marked(marks, _) if end.degree == degree => Some(*marks),
             _ => None,
         });
-        match self.carried.marks_besides(lying) {
-            Some(marks) => {
-                self.drop(marks, world)?;
-                self.leave_end(
-                    UnknownEnd { edge, degree, place: Place::Marked(marks, may_be) },
-                    world,
-                )
-            }
-            None => {
-                self.is_full = true;
-                self.go_back(world)
-            }
-        }
+        let Some(marks) = self.carried.marks_besides(lying) else {
+            self.is_full = true;
+            return self.go_back(world);
+        };
+        self.drop(marks, world)?;
+        self.leave_end(UnknownEnd { edge, degree, place: Place::Marked(marks, may_be) }, world)
     }
 
     fn leave_end<W: ObservedWorld>(&mut self, end: UnknownEnd, world: &mut W) -> Mapped<W> {

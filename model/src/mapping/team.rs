@@ -6,6 +6,7 @@
 //! the scout came in. Robots without a front are for worlds without loops and parallel edges: the scout goes back
 //! to the known end, and the explorer tries the unexplored darts until it is there, too.
 
+mod meeting;
 mod rounds;
 
 use super::{
@@ -20,6 +21,7 @@ use crate::{
     injected_flaw::InjectedFlaw,
     percept::{Door, OtherRobot, Percept, Sighting, TeamView},
 };
+use meeting::{Meeting, Robot};
 use rounds::Rounds;
 
 /// The state of a run with a team: the explorer's walk, and where the scouts are.
@@ -217,7 +219,7 @@ impl TeamRun {
         let door = self.map().door(pose, edge);
         let percept = self.send(scout, door, world)?;
         self.turn = (scout + 1) % self.scouts.len();
-        let (degree, is_alone) = self.seen_beyond(scout, percept)?;
+        let (degree, is_alone) = Self::seen_beyond(scout, percept)?;
         let may_be = if is_alone { self.may_be(scout, edge, degree) } else { Vec::new() };
         let candidates = may_be.iter().filter(|may_be| **may_be).count();
         self.scouts[scout] = Scout::Beyond(UnknownEnd { edge, degree, may_be, place: None });
@@ -246,7 +248,7 @@ impl TeamRun {
     }
 
     /// The number of doors that a scout perceives beyond an edge, and whether no other robot is there.
-    fn seen_beyond(&self, scout: usize, percept: Percept) -> Result<(u32, bool), Contradiction> {
+    fn seen_beyond(scout: usize, percept: Percept) -> Result<(u32, bool), Contradiction> {
         let impossible = Contradiction::Impossible { perceived: percept };
         let Sighting::Team(TeamView(seen)) = percept.sighting else { return Err(impossible) };
         let with_second =
@@ -331,18 +333,21 @@ impl TeamRun {
         let others = (0..self.scouts.len()).filter(|other| *other != scout).map(Robot::Scout);
         for other in [Robot::Explorer].into_iter().chain(others) {
             let Some(vertex) = self.place(other) else { continue };
-            let Some(doors) = meeting(scout, other, percept) else {
+            let meeting = Meeting::of(scout, other, percept);
+            if meeting.is_apart() {
                 if let Scout::Beyond(end) = &mut self.scouts[scout] {
                     end.exclude(vertex);
                 }
                 continue;
-            };
+            }
             place = Some(vertex);
             let pose = match other {
                 Robot::Explorer => Some(self.walk.robot),
                 Robot::Scout(at) => self.scouts[at].pose(),
             };
-            entry = entry.or(pose.zip(doors).map(|(pose, doors)| self.turned(pose, doors)));
+            if let (Some(pose), Meeting::Turned(clockwise, back)) = (pose, meeting) {
+                entry = entry.or(Some(self.turned(pose, clockwise, back)));
+            }
         }
         if let (Some(vertex), None) = (place, entry) {
             let mut darts = self.map().unexplored_at(vertex).filter(|dart| *dart != edge);
@@ -361,7 +366,7 @@ impl TeamRun {
     }
 
     /// The dart so many doors clockwise of another, and then so many counterclockwise.
-    fn turned(&self, dart: Dart, (clockwise, back): (Door, Door)) -> Dart {
+    fn turned(&self, dart: Dart, clockwise: Door, back: Door) -> Dart {
         let map = self.map();
         let vertex = map.vertex(dart);
         let degree = map.degree(vertex);
@@ -431,7 +436,7 @@ impl TeamRun {
         }
         self.walk.robot = pose;
         let is_found = (0..self.scouts.len())
-            .any(|scout| before[scout] && meeting(scout, Robot::Explorer, percept).is_some());
+            .any(|scout| before[scout] && !Meeting::of(scout, Robot::Explorer, percept).is_apart());
         if is_found {
             self.report(MovableEvent::Found { vertex }, world);
         } else if was_candidate {
@@ -490,7 +495,7 @@ impl TeamRun {
             let percept = self.walk.go(door, world)?;
             self.rounds.explorer_moved();
             self.rounds.waited_for(scout);
-            let is_met = meeting(scout, Robot::Explorer, percept).is_some();
+            let is_met = !Meeting::of(scout, Robot::Explorer, percept).is_apart();
             if is_met || InjectedFlaw::FirstDartIsIt.is_present() {
                 self.walk.edge = Some(edge);
                 self.walk.close_loop(dart, world)?;
@@ -541,34 +546,6 @@ impl TeamRun {
 
     fn report(&self, event: MovableEvent, world: &mut impl ObservedWorld) {
         world.event(&self.walk, MappingEvent::Movable(event));
-    }
-}
-
-/// A robot that may be where a scout is.
-#[derive(Clone, Copy)]
-enum Robot {
-    Explorer,
-    /// The scout with this number, from 0.
-    Scout(usize),
-}
-
-/// Whether a scout is where another robot is. If so, and if headings are seen, its entry dart is so many doors clockwise
-/// of the other's, and then so many counterclockwise.
-fn meeting(scout: usize, other: Robot, percept: Percept) -> Option<Option<(Door, Door)>> {
-    use OtherRobot::{Here, HereAlong, WithSecond, WithSecondAlong};
-    let Sighting::Team(TeamView(seen)) = percept.sighting else { return None };
-    match (other, seen.get(scout)?) {
-        (Robot::Explorer, Here) => Some(None),
-        (Robot::Explorer, HereAlong(door)) => Some(Some((*door, Door::BACK))),
-        (Robot::Explorer, _) => None,
-        (Robot::Scout(other), one) => match (one, seen.get(other)?, seen[1]) {
-            (Here, Here, _) => Some(None),
-            (HereAlong(one), HereAlong(other), _) => Some(Some((*one, *other))),
-            (_, _, WithSecond) => Some(None),
-            (_, _, WithSecondAlong(door)) if scout == 1 => Some(Some((door, Door::BACK))),
-            (_, _, WithSecondAlong(door)) => Some(Some((Door::BACK, door))),
-            _ => None,
-        },
     }
 }
 
