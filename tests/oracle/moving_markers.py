@@ -89,6 +89,8 @@ class Explorer:
                 place.vertex, place.entry = self.at[0], self.map.turned(self.at, lying[1])
             elif (place.degree, place.markers) == (self.hand.degree(), lying):
                 place.vertex = self.at[0]
+            if place.vertex is not None:
+                self.close_if_certain(place.dart, place)
         self.hand.pick_up()
 
     # ------------------------------------------------ the algorithm
@@ -101,6 +103,8 @@ class Explorer:
             return False
         dart = self.map.nearest(self.at[0], darts)
         self.go(dart[0])
+        if dart in self.map.other_end:
+            return True
         self.leave(dart)
         degree, lying = self.hand.degree(), self.hand.lying()
         if lying:
@@ -145,13 +149,17 @@ class Explorer:
             self.at = self.map.add(dart, place.degree)
             place.vertex = self.at[0]
 
+    def close_if_certain(self, edge, place):
+        """Whether the edge is then closed."""
+        darts = self.map.unexplored(place.vertex)
+        if edge not in self.map.other_end and (place.entry or len(darts) == 1):
+            self.map.close(edge, place.entry or darts[0])
+        return edge in self.map.other_end
+
     def close(self, edge, place):
-        if edge in self.map.other_end:
+        if self.close_if_certain(edge, place):
             return
         darts = self.map.unexplored(place.vertex)
-        if place.entry or len(darts) == 1:
-            self.map.close(edge, place.entry or darts[0])
-            return
         self.go(edge[0])
         self.hand.drop()
         for dart in self.map.way(self.at[0], place.vertex):

@@ -141,12 +141,12 @@ impl Explorer for MovableMarkerRun {
     fn choose(&mut self) -> Result<Option<Dart>, InvalidStep> {
         let Self { walk, ends, .. } = self;
         Ok(walk.nearest_unexplored_from(walk.robot, |dart: Dart| {
-            ends.iter().all(|end| !end.has(dart))
+            ends.iter().all(|end| end.edge != dart)
         }))
     }
 
     fn choices(&mut self) -> Result<Vec<Dart>, InvalidStep> {
-        let is_ahead = |dart: &Dart| self.ends.iter().all(|end| !end.has(*dart));
+        let is_ahead = |dart: &Dart| self.ends.iter().all(|end| end.edge != *dart);
         Ok(self.map().unexplored().filter(is_ahead).collect())
     }
 
@@ -232,10 +232,16 @@ impl MovableMarkerRun {
     /// The robot carries markers over an edge to its unknown end. If no known vertex can be that, it is new.
     /// Otherwise the robot leaves markers there, and comes back.
     fn mark_end<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
-        if !self.map().is_unexplored(edge) || self.ends.iter().any(|end| end.has(edge)) {
+        if self.ends.iter().any(|end| end.edge == edge)
+            || (self.ends.is_empty() && !self.map().is_unexplored(edge))
+        {
             return Err(InvalidStep::NotUnexplored(edge).into());
         }
         self.travel_to(self.map().vertex(edge), world)?;
+        // On the way there, it may have become the other end of another edge of this round.
+        if !self.map().is_unexplored(edge) {
+            return Ok(());
+        }
         let door = self.map().door(self.walk.robot, edge);
         let percept = self.walk.go(door, world)?;
         self.walk.edge = Some(edge);
@@ -372,20 +378,29 @@ impl MovableMarkerRun {
         };
         self.walk.robot = pose;
         self.report(MovableEvent::Found { vertex }, world);
-        let place = match perceived.sighting {
+        let edge = self.ends[found].edge;
+        let (place, other) = match perceived.sighting {
             Sighting::Pointing(door) => {
-                let index = (self.map().index(pose) + door.0) % expected.degree;
-                let dart = self.map().dart(vertex, index);
-                let is_free =
-                    |dart: &Dart| *dart != self.ends[found].edge && self.map().is_unexplored(*dart);
                 let index = self.map().index(pose);
                 let wrong = Contradiction::KnownPlace { vertex, index, expected, perceived };
-                Place::At(dart.filter(is_free).ok_or(wrong)?)
+                let dart = self.map().dart(vertex, (index + door.0) % expected.degree);
+                let is_free = |dart: &Dart| *dart != edge && self.map().is_unexplored(*dart);
+                let dart = dart.filter(is_free).ok_or(wrong)?;
+                (Place::At(dart), Some(dart))
             }
-            _ => Place::Known(vertex),
+            // An only unexplored dart of the vertex needs no validation.
+            _ => {
+                let mut darts = self.map().unexplored_at(vertex);
+                let only = darts.next().filter(|_| darts.next().is_none());
+                (Place::Known(vertex), only)
+            }
         };
         if let Place::Marked(marks, _) = std::mem::replace(&mut self.ends[found].place, place) {
             self.pick_up(marks, world)?;
+        }
+        if let Some(other) = other {
+            self.walk.edge = Some(edge);
+            self.walk.close_loop(other, world)?;
         }
         for end in &mut self.ends {
             end.exclude(vertex);
@@ -573,11 +588,6 @@ impl MovableMarkerRun {
 }
 
 impl UnknownEnd {
-    /// Whether a dart is an end of its edge.
-    fn has(&self, dart: Dart) -> bool {
-        dart == self.edge || matches!(self.place, Place::At(other) if other == dart)
-    }
-
     /// Whether its markers lie at a place that looks like this.
     fn looks_like(&self, place: Percept) -> bool {
         match &self.place {
