@@ -1,19 +1,19 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Markers.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
+    [MovableMarker.v], [Markers.v], [Aids.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
     terms; the proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions
-  Markers.
+  Markers Aids.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
   Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect GivenActionsCorrect CertificateNeeded
-  CertificateAttained.
+  CertificateAttained AidsAtVertices Fronts StringSimulation.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Figures(corridor_a, corridor_b, planar_a, planar_b).
-Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
+Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b, one_vertex).
 Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
 Import MovableMarker(handling_action, handling, can_handle, movable).
@@ -49,7 +49,7 @@ Proof. exact: Bisimulation.bisimilarP. Qed.
 
 (** In bisimilar starts every robot has the same history, whatever its actions and its strategy, and so gives the
     same answer. Paper: 2.2. *)
-Theorem bisimilar_history E A (robot : strategy_of E A) (I : start -> environment E) (V W : start) :
+Theorem bisimilar_history O E A (robot : robot_of O E A) (I : start -> environment_of O E) (V W : start) :
   bisimilar I V W ->
   (forall decisions, history robot (I V) decisions = history robot (I W) decisions) /\
   (forall answer, answers robot (I V) answer <-> answers robot (I W) answer).
@@ -492,6 +492,154 @@ have differ := Multigraphs.theta_not_isomorphic; have same := Multigraphs.theta_
 have differ' := Multigraphs.loops_not_isomorphic; have same' := Multigraphs.loops_handling.
 by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
                       | apply: Impossible.bisimilar_impossible same' differ' robot].
+Qed.
+
+(** * Aids that move *)
+
+(** Any number of movable markers, alike or not, show only at which vertices they lie; and any number of other robots
+    that show no heading show only at which vertices they are. Paper: beyond 2.3. *)
+Theorem aids_at_vertices (number : nat) :
+  [/\ shows_only_vertices (markers_alike number), shows_only_vertices (markers_distinct number)
+    & shows_only_vertices (team false number)].
+Proof.
+split; [exact: AidsAtVertices.markers_alike_at_vertices | exact: AidsAtVertices.markers_distinct_at_vertices |].
+exact: AidsAtVertices.team_at_vertices.
+Qed.
+
+(** With an aid that shows only vertices, starts are bisimilar if their poses correspond such that degrees are equal,
+    each door leads to corresponding poses, and those at one vertex correspond to those at one vertex. Paper: beyond
+    2.3. *)
+Theorem aids_at_vertices_bisimilar (X : aid) (V W : start) (R : V -> W -> Prop) :
+  shows_only_vertices X -> same_vertices R -> bisimilar (with_aid X) V W.
+Proof. exact: AidsAtVertices.aids_at_vertices_bisimilar. Qed.
+
+(** So any two bouquets, worlds with one vertex, are bisimilar with such an aid if they have the same degree. Paper:
+    beyond 2.3. *)
+Theorem bouquets_bisimilar (X : aid) (V W : start) :
+  shows_only_vertices X -> one_vertex V -> one_vertex W -> degree (facing V) = degree (facing W) ->
+  bisimilar (with_aid X) V W.
+Proof.
+move=> only one_V one_W; rewrite !Multigraphs.one_vertex_degree // => same.
+exact: AidsAtVertices.aids_at_vertices_bisimilar only (AidsAtVertices.bouquets_same_vertices one_V one_W same).
+Qed.
+
+(** Such an aid does not suffice in worlds with parallel edges, nor in worlds with loops: the two worlds of three
+    parallel edges, in the plane and on the torus, are bisimilar with it, and so are those of two loops. No robot maps
+    both of a pair. Paper: beyond 2.3. *)
+Theorem aids_at_vertices_impossible (X : aid) :
+  shows_only_vertices X ->
+  forall robot : robot_of (nat * sightings X) (action_with (aid_action X)) embedded_graph,
+  [/\ ~ isomorphic theta_plane theta_torus, bisimilar (with_aid X) theta_plane theta_torus
+    & ~ (maps (with_aid X) robot theta_plane /\ maps (with_aid X) robot theta_torus)] /\
+  [/\ ~ isomorphic two_loops_plane two_loops_torus, bisimilar (with_aid X) two_loops_plane two_loops_torus
+    & ~ (maps (with_aid X) robot two_loops_plane /\ maps (with_aid X) robot two_loops_torus)].
+Proof.
+move=> only robot; have differ := Multigraphs.theta_not_isomorphic; have differ' := Multigraphs.loops_not_isomorphic.
+have same := AidsAtVertices.aids_at_vertices_bisimilar only AidsAtVertices.theta_same_vertices.
+have same' := AidsAtVertices.aids_at_vertices_bisimilar only AidsAtVertices.loops_same_vertices.
+by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
+                      | apply: Impossible.bisimilar_impossible same' differ' robot].
+Qed.
+
+(** A directional marker that can be carried has a front: if it stays where it is at the start, it shows what one shows
+    that cannot be carried. So have other robots that show their heading, if there is at least one. Paper: beyond
+    2.3. *)
+Theorem aids_with_a_front (others : nat) :
+  has_front movable_directional /\ (0 < others -> has_front (team true others)).
+Proof. by split; [apply: Fronts.movable_directional_front | apply: Fronts.team_front]. Qed.
+
+(** If an aid has a front, starts that are bisimilar with it are isomorphic, facing to facing. Paper: beyond 2.3. *)
+Theorem front_determines (X : aid) (V W : start) :
+  has_front X -> bisimilar (with_aid X) V W -> isomorphic_starts V W.
+Proof. by move=> front; apply: Fronts.front_determines. Qed.
+
+(** Such an aid is as good as a directional marker: any robot with a directional marker can be simulated with the same
+    moves. What is possible for the one is possible for the other. Paper: beyond 2.3. *)
+Theorem front_as_good_as_directional (X : aid) A (robot : strategy A) :
+  has_front X ->
+  exists robot' : robot_of (nat * sightings X) (action_with (aid_action X)) A,
+  forall (W : start) n,
+    [/\ forall answer, robot (history robot (moving directional W) n) = Answer answer ->
+          robot' (history robot' (with_aid X W) n) = Answer answer,
+        (situation robot' (with_aid X W) n).2.1 = (situation robot (moving directional W) n).2
+      & (forall i, robot (history robot (moving directional W) n) = Act i ->
+          i < degree (situation robot (moving directional W) n).2) ->
+        forall e, robot' (history robot' (with_aid X W) n) = Act e ->
+          possible (situation robot' (with_aid X W) n).2 e].
+Proof.
+move=> [read reads]; exists (Fronts.reading read robot) => W n; split=> [answer answered||doors e].
+- by rewrite (Fronts.reading_history _ (reads W)) answered.
+- by rewrite (Fronts.reading_state _ (reads W)).
+by apply: (Fronts.reading_possible (reads W)) => i; apply: doors.
+Qed.
+
+(** So one robot maps every world with such an aid. It knows where it is in its map, does only what is possible, and makes
+    at most m n + 2 m^2 (n - 1) moves. Paper: beyond 2.3. *)
+Theorem front_suffices (X : aid) :
+  has_front X ->
+  exists robot : robot_of (nat * sightings X) (action_with (aid_action X)) located,
+  forall W : start, exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let pose := (situation robot (with_aid X W) decisions).2.1 in
+    [/\ robot (history robot (with_aid X W) decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        forall j e, robot (history robot (with_aid X W) j) = Act e ->
+          possible (situation robot (with_aid X W) j).2 e
+      & decisions <= m * n + 2 * m ^ 2 * (n - 1)].
+Proof.
+move=> /Fronts.front_locates[robot maps_W]; exists robot => W; have := maps_W W.
+by rewrite /Correct.cost -mulnn subn1.
+Qed.
+
+(** If two starts are bisimilar with a string as long as an edge, or longer, they are isomorphic, facing to facing.
+    Paper: beyond 2.3. *)
+Theorem string_determines (length : nat) (V W : start) :
+  0 < length -> bisimilar (with_aid (string length)) V W -> isomorphic_starts V W.
+Proof. exact: StringSimulation.string_determines. Qed.
+
+(** A string is as good as a directional marker, too: any robot with a directional marker can be simulated, with at most
+    2 moves more, and at most 3 times as many actions and 5 more. What is possible for the one is possible for the
+    other. Paper: beyond 2.3. *)
+Theorem string_as_good_as_directional A (robot : strategy A) :
+  exists robot' : robot_of (nat * string_view) (action_with holding) A,
+  forall (W : start) (length n : nat) answer, 0 < length ->
+    robot (history robot (moving directional W) n) = Answer answer ->
+    let with_string := with_aid (string length) W in
+    exists n',
+      [/\ robot' (history robot' with_string n') = Answer answer,
+          (situation robot' with_string n').2.1 = (situation robot (moving directional W) n).2,
+          (forall j i, robot (history robot (moving directional W) j) = Act i ->
+            i < degree (situation robot (moving directional W) j).2) ->
+          forall j e, robot' (history robot' with_string j) = Act e -> possible (situation robot' with_string j).2 e,
+          doors_used robot' with_string n' <= n + 2
+        & n' <= 3 * n + 5].
+Proof.
+exists (StringSimulation.simulating robot) => W length n answer length_gt0 answered.
+have [n' [d [n'_le answered' at_n' used only]]] := StringSimulation.simulating_answers length_gt0 answered.
+by exists n'; rewrite at_n'.
+Qed.
+
+(** So one robot maps every world with such a string, whatever its length. It knows where it is in its map, and does only
+    what is possible. It makes at most m n + 2 m^2 (n - 1) + 2 moves, and at most 3 (m n + 2 m^2 (n - 1)) + 5 actions:
+    moves, pick-ups and drops. Paper: beyond 2.3. *)
+Theorem string_suffices :
+  exists robot : robot_of (nat * string_view) (action_with holding) located,
+  forall (W : start) (length : nat), 0 < length -> exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let bound := m * n + 2 * m ^ 2 * (n - 1) in
+    let with_string := with_aid (string length) W in
+    let pose := (situation robot with_string decisions).2.1 in
+    [/\ robot (history robot with_string decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        forall j e, robot (history robot with_string j) = Act e -> possible (situation robot with_string j).2 e,
+        doors_used robot with_string decisions <= bound + 2
+      & decisions <= 3 * bound + 5].
+Proof.
+exists (StringSimulation.simulating Mapper.locating_mapper) => W length length_gt0.
+have [map [n [answered located only n_le used]]] := StringSimulation.string_locates W length_gt0.
+by exists map, n; split=> //; move: n_le used; rewrite /Correct.cost -mulnn subn1.
 Qed.
 
 (** * Folding *)
