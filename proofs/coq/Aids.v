@@ -1,5 +1,5 @@
-(** Marking aids: what a robot may use to mark places, as small transition systems on a world; and the aids of toposlam
-    that move. Definitions only. Beyond the paper; the names are those of [docs/aids.md]. *)
+(** Marking aids: what a robot may use to mark places, as small transition systems on a world; and the aids of
+    toposlam that move. Definitions only. Beyond the paper; the names are those of [docs/aids.md]. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec.
@@ -10,8 +10,9 @@ Unset Printing Implicit Defensive.
 
 (** * Marking aids *)
 
-(** A marking aid. In a world it has a state: where markers lie, where a string runs, where other robots stand. It adds
-    a sighting to the percept of a robot, which depends on the robot's pose. And it has actions beside doors. *)
+(** A marking aid. In a world it has a state: where markers lie, where a string runs, where other robots stand. It
+    adds a sighting to the percept of a robot, which depends on the robot's pose. And it has actions beside doors.
+    *)
 Record aid := Aid {
   sightings : Type;
   aid_action : Type;
@@ -50,6 +51,10 @@ Definition with_aid (X : aid) (W : start) : environment_of (nat * sightings X) (
     end;
   sense := fun s => (degree s.1, shows s.1 s.2)
 |}.
+
+(** A robot does only what is possible. *)
+Definition possible_only O E A (robot : robot_of O E A) (I : environment_of O E) : Prop :=
+  forall decisions e, robot (history robot I decisions) = Act e -> possible (situation robot I decisions).2 e.
 
 Definition takes_door E A (d : decision (action_with E) A) : bool := if d is Act (Take _) then true else false.
 
@@ -129,15 +134,17 @@ Definition movable_directional : aid := {|
 
 (** * Other robots *)
 
-(** What is known of another robot: it is here; it is with an earlier one of the others; or it is elsewhere, at a vertex
-    with so many doors. Where robots are together, a robot with a heading shows along which door it stands. *)
+(** What is known of another robot: it is here; it is with an earlier one of the others; or it is elsewhere, at a
+    vertex with so many doors. Where robots are together, a robot with a heading shows along which door it stands.
+    *)
 Inductive companion := Here of option door | With of nat & option door | Elsewhere of nat.
 
 Definition stands_along (heading : bool) (G : embedded_graph) (pose other : G) : option door :=
   if heading then Some (findex clockwise pose other) else None.
 
 (** What is known of the other robot of this number. *)
-Definition companion_seen (heading : bool) (G : embedded_graph) (pose : G) (robots : seq G) (number : nat) : companion :=
+Definition companion_seen (heading : bool) (G : embedded_graph) (pose : G) (robots : seq G) (number : nat) :
+    companion :=
   let other := nth pose robots number in
   if same_vertex pose other then Here (stands_along heading pose other) else
   let earlier := find (same_vertex other) (take number robots) in
@@ -164,12 +171,12 @@ Definition team (heading : bool) (others : nat) : aid := {|
 
 (** * A string *)
 
-(** Where a string is: its fixed end, at the vertex of a dart; the darts by which it leaves each vertex on its way, the
-    last one first; and its free end, at the vertex of a dart, or none while the robot holds it. *)
+(** Where a string is: its fixed end, at the vertex of a dart; the darts by which it leaves each vertex on its way,
+    the last one first; and its free end, at the vertex of a dart, or none while the robot holds it. *)
 Record string_place (G : Type) := StringPlace { fixed_end : G; string_way : seq G; free_end : option G }.
 
-(** What a robot sees of it: the doors through which it runs here, which end is here, and the door through which it runs
-    from the robot's hand. *)
+(** What a robot sees of it: the doors through which it runs here, which end is here, and the door through which it
+    runs from the robot's hand. *)
 Record string_view := StringView {
   runs_through : seq door;
   fixed_here : bool;
@@ -210,8 +217,9 @@ Definition string (length : nat) : aid := {|
 
 (** * What an aid shows *)
 
-(** Poses of two starts correspond, so that vertices correspond: the facing darts do, corresponding poses have the same
-    degree, each door leads them to corresponding poses, and those at one vertex correspond to those at one vertex. *)
+(** Poses of two starts correspond, so that vertices correspond: the facing darts do, corresponding poses have the
+    same degree, each door leads them to corresponding poses, and those at one vertex correspond to those at one
+    vertex. *)
 Definition same_vertices (V W : start) (R : V -> W -> Prop) : Prop :=
   [/\ R (facing V) (facing W),
       forall p q, R p q -> degree p = degree q,
@@ -229,8 +237,8 @@ Definition shows_only_vertices (X : aid) : Prop :=
           forall a, can_act p x a = can_act q y a /\ (can_act p x a -> S (act p x a) (act q y a))
         & forall i, can_leave x (turn p i) = can_leave y (turn q i) /\ S (leave x (turn p i)) (leave y (turn q i))].
 
-(** An aid has a front if it shows, as it is at the start, and as long as the robot takes doors only, what a directional
-    marker shows. *)
+(** An aid has a front if it shows, as it is at the start, and as long as the robot takes doors only, what a
+    directional marker shows. *)
 Definition has_front (X : aid) : Prop :=
   exists read : nat * sightings X -> percept, forall W : start,
     let first := first_placed X (facing W) in

@@ -9,7 +9,8 @@ From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obe
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
   Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect GivenActionsCorrect CertificateNeeded
-  CertificateAttained AidsAtVertices Fronts StringSimulation.
+  CertificateAttained IsomorphicAids AidsAtVertices Imitation Fronts Strings
+  HeldMarkers RoundTeams.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Figures(corridor_a, corridor_b, planar_a, planar_b).
@@ -496,6 +497,22 @@ Qed.
 
 (** * Aids that move *)
 
+(** No aid of toposlam that moves shows more than an isomorphism keeps: with each of them, isomorphic starts are
+    bisimilar. Paper: beyond 2.3. *)
+Theorem isomorphic_starts_bisimilar (number : nat) (heading : bool) (V W : start) :
+  isomorphic_starts V W ->
+  [/\ bisimilar (with_aid (markers_alike number)) V W, bisimilar (with_aid (markers_distinct number)) V W,
+      bisimilar (with_aid movable_directional) V W, bisimilar (with_aid (team heading number)) V W
+    & bisimilar (with_aid (string number)) V W].
+Proof.
+split; apply: IsomorphicAids.isomorphic_bisimilar => //.
+- exact: IsomorphicAids.alike_keeps_isomorphisms.
+- exact: IsomorphicAids.distinct_keeps_isomorphisms.
+- exact: IsomorphicAids.directional_keeps_isomorphisms.
+- exact: IsomorphicAids.team_keeps_isomorphisms.
+exact: IsomorphicAids.string_keeps_isomorphisms.
+Qed.
+
 (** Any number of movable markers, alike or not, show only at which vertices they lie; and any number of other robots
     that show no heading show only at which vertices they are. Paper: beyond 2.3. *)
 Theorem aids_at_vertices (number : nat) :
@@ -541,40 +558,44 @@ by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
                       | apply: Impossible.bisimilar_impossible same' differ' robot].
 Qed.
 
-(** A directional marker that can be carried has a front: if it stays where it is at the start, it shows what one shows
-    that cannot be carried. So have other robots that show their heading, if there is at least one. Paper: beyond
-    2.3. *)
+(** A directional marker that can be carried has a front: if it stays where it is at the start, it shows what one
+    shows that cannot be carried. So have other robots that show their heading, if there is at least one. Paper:
+    beyond 2.3. *)
 Theorem aids_with_a_front (others : nat) :
   has_front movable_directional /\ (0 < others -> has_front (team true others)).
 Proof. by split; [apply: Fronts.movable_directional_front | apply: Fronts.team_front]. Qed.
 
-(** If an aid has a front, starts that are bisimilar with it are isomorphic, facing to facing. Paper: beyond 2.3. *)
-Theorem front_determines (X : aid) (V W : start) :
-  has_front X -> bisimilar (with_aid X) V W -> isomorphic_starts V W.
-Proof. by move=> front; apply: Fronts.front_determines. Qed.
-
-(** Such an aid is as good as a directional marker: any robot with a directional marker can be simulated with the same
-    moves. What is possible for the one is possible for the other. Paper: beyond 2.3. *)
+(** Such an aid is as good as a directional marker: any robot with a directional marker can be simulated, if it takes
+    only doors that exist. The simulating robot gives the same answer in the same pose, does only what is possible, and
+    does no more actions. Paper: beyond 2.3. *)
 Theorem front_as_good_as_directional (X : aid) A (robot : strategy A) :
   has_front X ->
   exists robot' : robot_of (nat * sightings X) (action_with (aid_action X)) A,
-  forall (W : start) n,
-    [/\ forall answer, robot (history robot (moving directional W) n) = Answer answer ->
-          robot' (history robot' (with_aid X W) n) = Answer answer,
-        (situation robot' (with_aid X W) n).2.1 = (situation robot (moving directional W) n).2
-      & (forall i, robot (history robot (moving directional W) n) = Act i ->
-          i < degree (situation robot (moving directional W) n).2) ->
-        forall e, robot' (history robot' (with_aid X W) n) = Act e ->
-          possible (situation robot' (with_aid X W) n).2 e].
+  forall W : start, possible_only robot (moving directional W) ->
+  forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
+  exists n',
+    [/\ robot' (history robot' (with_aid X W) n') = Answer answer,
+        (situation robot' (with_aid X W) n').2.1 = (situation robot (moving directional W) n).2,
+        possible_only robot' (with_aid X W)
+      & n' <= n].
 Proof.
-move=> [read reads]; exists (Fronts.reading read robot) => W n; split=> [answer answered||doors e].
-- by rewrite (Fronts.reading_history _ (reads W)) answered.
-- by rewrite (Fronts.reading_state _ (reads W)).
-by apply: (Fronts.reading_possible (reads W)) => i; apply: doors.
+move=> [read front]; pose look := Fronts.read_front read; exists (Imitation.in_place_of look look robot).
+move=> W only n answer answered; have [n' [answered' same possible _ n'_le]] := Imitation.in_place_of_answers
+  (@Fronts.untouched_pose _ W) (Fronts.untouched_first (front W)) (Fronts.untouched_next (front W)) only answered.
+by exists n'; rewrite muln1 in n'_le.
 Qed.
 
-(** So one robot maps every world with such an aid. It knows where it is in its map, does only what is possible, and makes
-    at most m n + 2 m^2 (n - 1) moves. Paper: beyond 2.3. *)
+(** Starts that are bisimilar with such an aid are isomorphic, facing to facing. Paper: beyond 2.3. *)
+Theorem front_determines (X : aid) (V W : start) :
+  has_front X -> bisimilar (with_aid X) V W -> isomorphic_starts V W.
+Proof.
+move=> [read front] same; have maps_W U := Imitation.in_place_of_maps
+  (@Fronts.untouched_pose _ U) (Fronts.untouched_first (front U)) (Fronts.untouched_next (front U)).
+exact: Impossible.bisimilar_maps_start same (maps_W V) (maps_W W).
+Qed.
+
+(** One robot maps every world with such an aid. It knows where it is in its map, does only what is possible, and
+    makes at most m n + 2 m^2 (n - 1) moves. Paper: beyond 2.3. *)
 Theorem front_suffices (X : aid) :
   has_front X ->
   exists robot : robot_of (nat * sightings X) (action_with (aid_action X)) located,
@@ -584,43 +605,48 @@ Theorem front_suffices (X : aid) :
     let pose := (situation robot (with_aid X W) decisions).2.1 in
     [/\ robot (history robot (with_aid X W) decisions) = Answer map,
         exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
-        forall j e, robot (history robot (with_aid X W) j) = Act e ->
-          possible (situation robot (with_aid X W) j).2 e
+        possible_only robot (with_aid X W)
       & decisions <= m * n + 2 * m ^ 2 * (n - 1)].
 Proof.
-move=> /Fronts.front_locates[robot maps_W]; exists robot => W; have := maps_W W.
-by rewrite /Correct.cost -mulnn subn1.
+move=> [read front]; pose look := Fronts.read_front read.
+exists (Imitation.in_place_of look look Mapper.locating_mapper) => W.
+have [map [n [answered located only _ n_le]]] := Imitation.in_place_of_locates
+  (@Fronts.untouched_pose _ W) (Fronts.untouched_first (front W)) (Fronts.untouched_next (front W)).
+by exists map, n; split=> //; move: n_le; rewrite muln1 /Correct.cost -mulnn subn1.
 Qed.
 
-(** If two starts are bisimilar with a string as long as an edge, or longer, they are isomorphic, facing to facing.
-    Paper: beyond 2.3. *)
-Theorem string_determines (length : nat) (V W : start) :
-  0 < length -> bisimilar (with_aid (string length)) V W -> isomorphic_starts V W.
-Proof. exact: StringSimulation.string_determines. Qed.
-
-(** A string is as good as a directional marker, too: any robot with a directional marker can be simulated, with at most
-    2 moves more, and at most 3 times as many actions and 5 more. What is possible for the one is possible for the
-    other. Paper: beyond 2.3. *)
+(** A string as long as an edge, or longer, is as good as a directional marker, too: any robot with a directional
+    marker can be simulated, if it takes only doors that exist. The simulating robot gives the same answer in the same
+    pose, and does only what is possible. It makes at most 2 moves more, and does at most 3 times as many actions and 5
+    more. Paper: beyond 2.3. *)
 Theorem string_as_good_as_directional A (robot : strategy A) :
   exists robot' : robot_of (nat * string_view) (action_with holding) A,
-  forall (W : start) (length n : nat) answer, 0 < length ->
-    robot (history robot (moving directional W) n) = Answer answer ->
-    let with_string := with_aid (string length) W in
-    exists n',
-      [/\ robot' (history robot' with_string n') = Answer answer,
-          (situation robot' with_string n').2.1 = (situation robot (moving directional W) n).2,
-          (forall j i, robot (history robot (moving directional W) j) = Act i ->
-            i < degree (situation robot (moving directional W) j).2) ->
-          forall j e, robot' (history robot' with_string j) = Act e -> possible (situation robot' with_string j).2 e,
-          doors_used robot' with_string n' <= n + 2
-        & n' <= 3 * n + 5].
+  forall (W : start) (length : nat), 0 < length -> possible_only robot (moving directional W) ->
+  forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
+  let with_string := with_aid (string length) W in
+  exists n',
+    [/\ robot' (history robot' with_string n') = Answer answer,
+        (situation robot' with_string n').2.1 = (situation robot (moving directional W) n).2,
+        possible_only robot' with_string, doors_used robot' with_string n' <= n + 2
+      & n' <= 3 * n + 5].
 Proof.
-exists (StringSimulation.simulating robot) => W length n answer length_gt0 answered.
-have [n' [d [n'_le answered' at_n' used only]]] := StringSimulation.simulating_answers length_gt0 answered.
-by exists n'; rewrite at_n'.
+exists (Imitation.in_place_of (X := string 1) Strings.lay_string Strings.look_at_string robot).
+move=> W length length_gt0 only n answer answered.
+have [n' [answered' same possible used n'_le]] := Imitation.in_place_of_answers
+  (@Strings.laid_pose length W) (Strings.laid_first W length_gt0) (@Strings.laid_next length W) only answered.
+by exists n'; rewrite [n + 2]addnC [3 * n + 5]addnC [3 * n]mulnC; split=> //; rewrite -[n]muln1.
 Qed.
 
-(** So one robot maps every world with such a string, whatever its length. It knows where it is in its map, and does only
+(** Starts that are bisimilar with such a string are isomorphic, facing to facing. Paper: beyond 2.3. *)
+Theorem string_determines (length : nat) (V W : start) :
+  0 < length -> bisimilar (with_aid (string length)) V W -> isomorphic_starts V W.
+Proof.
+move=> length_gt0 same; have maps_W U := Imitation.in_place_of_maps
+  (@Strings.laid_pose length U) (Strings.laid_first U length_gt0) (@Strings.laid_next length U).
+exact: Impossible.bisimilar_maps_start same (maps_W V) (maps_W W).
+Qed.
+
+(** One robot maps every world with such a string, whatever its length. It knows where it is in its map, and does only
     what is possible. It makes at most m n + 2 m^2 (n - 1) + 2 moves, and at most 3 (m n + 2 m^2 (n - 1)) + 5 actions:
     moves, pick-ups and drops. Paper: beyond 2.3. *)
 Theorem string_suffices :
@@ -633,13 +659,84 @@ Theorem string_suffices :
     let pose := (situation robot with_string decisions).2.1 in
     [/\ robot (history robot with_string decisions) = Answer map,
         exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
-        forall j e, robot (history robot with_string j) = Act e -> possible (situation robot with_string j).2 e,
-        doors_used robot with_string decisions <= bound + 2
+        possible_only robot with_string, doors_used robot with_string decisions <= bound + 2
       & decisions <= 3 * bound + 5].
 Proof.
-exists (StringSimulation.simulating Mapper.locating_mapper) => W length length_gt0.
-have [map [n [answered located only n_le used]]] := StringSimulation.string_locates W length_gt0.
-by exists map, n; split=> //; move: n_le used; rewrite /Correct.cost -mulnn subn1.
+exists (Imitation.in_place_of (X := string 1) Strings.lay_string Strings.look_at_string Mapper.locating_mapper).
+move=> W length length_gt0; have [map [n [answered located only used n_le]]] := Imitation.in_place_of_locates
+  (@Strings.laid_pose length W) (Strings.laid_first W length_gt0) (@Strings.laid_next length W).
+move: n_le used; rewrite /Correct.cost -mulnn subn1 muln1 addnC [2 + _]addnC mulnC => n_le used.
+by exists map, n.
+Qed.
+
+(** In worlds without loops and parallel edges any number of movable markers suffices, alike or not, but at least one:
+    one robot maps all of these worlds. It knows where it is in its map, and does only what is possible. For each
+    marker but one it does one action more than the bound for one marker allows: it picks that marker up, and keeps
+    it. Paper: beyond 2.3. *)
+Theorem movable_markers_suffice_simple (number : nat) (X : aid) :
+  0 < number -> X = markers_alike number \/ X = markers_distinct number ->
+  exists robot : robot_of (nat * sightings X) (action_with (aid_action X)) located,
+  forall W : start, simple W -> exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let pose := (situation robot (with_aid X W) decisions).2.1 in
+    [/\ robot (history robot (with_aid X W) decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        possible_only robot (with_aid X W)
+      & decisions <= number - 1 + (1 + m * ((n + 4) * (n - 1) + 4 * m + 8))].
+Proof.
+case: number => // held _ kind; rewrite subn1 /=.
+have mapper (W : start) : simple W -> exists map n,
+    [/\ MovableMapper.movable_mapper (history MovableMapper.movable_mapper (handling W) n) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W
+          & f (Algorithm1.robot map) = (situation MovableMapper.movable_mapper (handling W) n).2.1],
+        possible_only MovableMapper.movable_mapper (handling W)
+      & n <= 1 + edges W * ((vertices W + 4) * (vertices W - 1) + 4 * edges W + 8)].
+  move=> /MovableMapper.movable_mapper_maps[map [n at_n]]; exists map, n.
+  move: at_n; rewrite /MovableCost.round_cost -addnA [8 + _]addnC addnA subn1 /possible_only.
+  by case: (situation _ _ n).2 => pose lying [].
+case: kind => ->.
+- exists (Imitation.imitating MovableMapper.movable_mapper HeldMarkers.do_with_alike
+    (HeldMarkers.pick_up_alike held) HeldMarkers.look_at_alike) => W simple_W.
+  have [map [n [answered located only n_le]]] := mapper W simple_W.
+  have [n' [answered' [a [b [_ at_n']]] possible _ n'_le]] :=
+    Imitation.imitating_answers (HeldMarkers.alike_first held W) (@HeldMarkers.alike_next held W) only answered.
+  exists map, n'; rewrite at_n'; split=> //; apply: leq_trans n'_le _.
+  by rewrite muln1 leq_add2l.
+exists (Imitation.imitating MovableMapper.movable_mapper HeldMarkers.do_with_first
+  (HeldMarkers.pick_up_others held) HeldMarkers.look_at_first) => W simple_W.
+have [map [n [answered located only n_le]]] := mapper W simple_W.
+have [n' [answered' at_n' possible _ n'_le]] :=
+  Imitation.imitating_answers (HeldMarkers.distinct_first held W) (@HeldMarkers.distinct_next held W) only answered.
+exists map, n'; rewrite at_n'; split=> //; apply: leq_trans n'_le _.
+by rewrite muln1 leq_add2l.
+Qed.
+
+(** So does another robot that shows no heading: one robot maps every world without loops and parallel edges with
+    such robots, if there is at least one. It knows where it is in its map, and does only what is possible. If all
+    degrees are at most d, it does at most (2 d + 5) (m n + 2 m^2 (n - 1)) + 2 d + 4 actions: moves of both. Paper:
+    beyond 2.3. *)
+Theorem round_team_suffices_simple :
+  exists robot : robot_of (nat * seq companion) (action_with sending) located,
+  forall (W : start) (others d : nat), 0 < others -> simple W -> (forall p : W, degree p <= d) ->
+  exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let in_team := with_aid (team false others) W in
+    let pose := (situation robot in_team decisions).2.1 in
+    [/\ robot (history robot in_team decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        possible_only robot in_team
+      & decisions <= (2 * d + 5) * (m * n + 2 * m ^ 2 * (n - 1)) + (2 * d + 4)].
+Proof.
+pose look := RoundTeams.look_at_team.
+exists (Imitation.in_place_of (X := team false 1) look look Mapper.locating_mapper).
+move=> W [//|others] d _ simple_W small.
+have [map [n [answered located only _ n_le]]] := Imitation.in_place_of_locates
+  (@RoundTeams.waits_pose others W) (RoundTeams.waits_first others simple_W small)
+  (@RoundTeams.waits_next others W simple_W d small).
+exists map, n; split=> //; move: n_le.
+by rewrite /Correct.cost -mulnn subn1 addnC -addnS mulnC.
 Qed.
 
 (** * Folding *)
@@ -792,8 +889,8 @@ move=> maps_all W n answer answered; apply: CertificateNeeded.certificate_needed
 exact: Returns.robot_determined answered.
 Qed.
 
-(** The formula of the certificate: it is a lower bound for every robot that maps every world, in each world, and it is
-    attained, by the shortest walk with a complete folded trail. Paper: beyond 2.3. *)
+(** The formula of the certificate: it is a lower bound for every robot that maps every world, in each world, and
+    it is attained, by the shortest walk with a complete folded trail. Paper: beyond 2.3. *)
 Theorem certificate_length (W : start) :
   [/\ forall robot : strategy start, (forall V, maps_start (moving directional) robot V) ->
         forall n answer, robot (history robot (moving directional W) n) = Answer answer ->

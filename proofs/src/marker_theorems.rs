@@ -72,12 +72,13 @@ mod tests {
     use crate::theorems;
 
     /// Theorems about markers that are not kinds: at a dead end, and two that are not adjacent. And about aids that move.
-    const OTHERS: [&str; 5] = [
+    const OTHERS: [&str; 6] = [
         "undirected_dead_end_suffices",
         "two_distant_impossible",
         "aids_at_vertices_impossible",
         "front_suffices",
         "string_suffices",
+        "round_team_suffices_simple",
     ];
 
     #[test]
