@@ -10,9 +10,9 @@ Unset Printing Implicit Defensive.
 
 (** * Marking aids *)
 
-(** A marking aid. In a world it has a state: where markers lie, where a string runs, where other robots stand. It
-    adds a sighting to the percept of a robot, which depends on the robot's pose. And it has actions beside doors.
-    *)
+(** A marking aid. In a world it has a state: where markers lie, where a string runs, where other robots
+    stand. It adds a sighting to the percept of a robot, which depends on the robot's pose. And it has actions beside
+    doors. *)
 Record aid := Aid {
   sightings : Type;
   aid_action : Type;
@@ -134,9 +134,9 @@ Definition movable_directional : aid := {|
 
 (** * Other robots *)
 
-(** What is known of another robot: it is here; it is with an earlier one of the others; or it is elsewhere, at a
-    vertex with so many doors. Where robots are together, a robot with a heading shows along which door it stands.
-    *)
+(** What is known of another robot: it is here; it is with an earlier one of the others; or it is
+    elsewhere, at a vertex with so many doors. Where robots are together, a robot with a heading shows along which door
+    it stands. *)
 Inductive companion := Here of option door | With of nat & option door | Elsewhere of nat.
 
 Definition stands_along (heading : bool) (G : embedded_graph) (pose other : G) : option door :=

@@ -566,8 +566,8 @@ Theorem aids_with_a_front (others : nat) :
 Proof. by split; [apply: Fronts.movable_directional_front | apply: Fronts.team_front]. Qed.
 
 (** Such an aid is as good as a directional marker: any robot with a directional marker can be simulated, if it takes
-    only doors that exist. The simulating robot gives the same answer in the same pose, does only what is possible, and
-    does no more actions. Paper: beyond 2.3. *)
+    only doors that exist. The simulating robot gives the same answer in the same pose, does only what is possible,
+    and does no more actions. Paper: beyond 2.3. *)
 Theorem front_as_good_as_directional (X : aid) A (robot : strategy A) :
   has_front X ->
   exists robot' : robot_of (nat * sightings X) (action_with (aid_action X)) A,
@@ -617,8 +617,8 @@ Qed.
 
 (** A string as long as an edge, or longer, is as good as a directional marker, too: any robot with a directional
     marker can be simulated, if it takes only doors that exist. The simulating robot gives the same answer in the same
-    pose, and does only what is possible. It makes at most 2 moves more, and does at most 3 times as many actions and 5
-    more. Paper: beyond 2.3. *)
+    pose, and does only what is possible. It makes at most 2 moves more, and does at most 3 times as many actions and
+    5 more. Paper: beyond 2.3. *)
 Theorem string_as_good_as_directional A (robot : strategy A) :
   exists robot' : robot_of (nat * string_view) (action_with holding) A,
   forall (W : start) (length : nat), 0 < length -> possible_only robot (moving directional W) ->
