@@ -9,7 +9,7 @@ From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obe
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
   Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect GivenActionsCorrect CertificateNeeded
-  CertificateAttained IsomorphicAids AidsAtVertices Imitation Fronts Strings
+  CertificateAttained AidIsomorphisms AidsAtVertices Imitation Fronts Strings
   HeldMarkers RoundTeams.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
@@ -505,12 +505,12 @@ Theorem isomorphic_starts_bisimilar (number : nat) (heading : bool) (V W : start
       bisimilar (with_aid movable_directional) V W, bisimilar (with_aid (team heading number)) V W
     & bisimilar (with_aid (string number)) V W].
 Proof.
-split; apply: IsomorphicAids.isomorphic_bisimilar => //.
-- exact: IsomorphicAids.alike_keeps_isomorphisms.
-- exact: IsomorphicAids.distinct_keeps_isomorphisms.
-- exact: IsomorphicAids.directional_keeps_isomorphisms.
-- exact: IsomorphicAids.team_keeps_isomorphisms.
-exact: IsomorphicAids.string_keeps_isomorphisms.
+split; apply: AidIsomorphisms.isomorphic_bisimilar => //.
+- exact: AidIsomorphisms.alike_keeps_isomorphisms.
+- exact: AidIsomorphisms.distinct_keeps_isomorphisms.
+- exact: AidIsomorphisms.directional_keeps_isomorphisms.
+- exact: AidIsomorphisms.team_keeps_isomorphisms.
+exact: AidIsomorphisms.string_keeps_isomorphisms.
 Qed.
 
 (** Any number of movable markers, alike or not, show only at which vertices they lie; and any number of other robots
