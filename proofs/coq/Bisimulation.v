@@ -34,16 +34,16 @@ Proof. by move=> UV VW doors; rewrite UV. Qed.
 
 Section Runs.
 
-Variables (E A : Type) (robot : strategy_of E A).
+Variables (O E A : Type) (robot : robot_of O E A).
 
-Lemma historyS (I : environment E) n :
+Lemma historyS (I : environment_of O E) n :
   history robot I n.+1 =
     if robot (history robot I n) is Act e then
       rcons (history robot I n) (sense (next_state (situation robot I n).2 e))
     else history robot I n.
 Proof. by rewrite /history /=; case: (situation _ _ n) => past s /=; case: (robot past). Qed.
 
-Lemma bisimilar_history (I : start -> environment E) V W :
+Lemma bisimilar_history (I : start -> environment_of O E) V W :
   bisimilar I V W -> forall n, history robot (I V) n = history robot (I W) n.
 Proof.
 move=> [R [start_R R_step]] n.
@@ -55,13 +55,13 @@ have [_ next] := R_step _ _ st; case: (robot past) => //= e.
 by have [-> _] := R_step _ _ (next e).
 Qed.
 
-Lemma bisimilar_answers (I : start -> environment E) V W :
+Lemma bisimilar_answers (I : start -> environment_of O E) V W :
   bisimilar I V W -> forall a, answers robot (I V) a <-> answers robot (I W) a.
 Proof.
 by move=> /bisimilar_history same a; split=> -[n answered]; exists n; rewrite -answered same.
 Qed.
 
-Variable I : environment E.
+Variable I : environment_of O E.
 
 (** A robot that has answered stays where it is. *)
 Lemma history_answered a n k : robot (history robot I n) = Answer a -> history robot I (n + k) = history robot I n.

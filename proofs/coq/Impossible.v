@@ -9,7 +9,7 @@ Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 (** The robot gives the same map in both. *)
-Lemma bisimilar_maps E (I : start -> environment E) (robot : strategy_of E embedded_graph) V W :
+Lemma bisimilar_maps O E (I : start -> environment_of O E) (robot : robot_of O E embedded_graph) V W :
   bisimilar I V W -> maps I robot V -> maps I robot W -> isomorphic V W.
 Proof.
 move=> /(bisimilar_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
@@ -17,7 +17,7 @@ by apply: isomorphic_trans (isomorphic_sym map_V) _; rewrite (answers_inj answer
 Qed.
 
 (** And if the map contains the start, it is the same start in both. *)
-Lemma bisimilar_maps_start E (I : start -> environment E) (robot : strategy_of E start) V W :
+Lemma bisimilar_maps_start O E (I : start -> environment_of O E) (robot : robot_of O E start) V W :
   bisimilar I V W -> maps_start I robot V -> maps_start I robot W -> isomorphic_starts V W.
 Proof.
 move=> /(bisimilar_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
@@ -25,9 +25,9 @@ apply: isomorphic_starts_trans (isomorphic_starts_sym map_V) _.
 by rewrite (answers_inj answers_map answers_map').
 Qed.
 
-Corollary bisimilar_impossible E (I : start -> environment E) V W :
+Corollary bisimilar_impossible O E (I : start -> environment_of O E) V W :
   bisimilar I V W -> ~ isomorphic V W ->
-  forall robot : strategy_of E embedded_graph, ~ (maps I robot V /\ maps I robot W).
+  forall robot : robot_of O E embedded_graph, ~ (maps I robot V /\ maps I robot W).
 Proof. by move=> VW not_iso robot [/(bisimilar_maps VW) both /both]. Qed.
 
 Lemma no_marker_impossible (robot : strategy embedded_graph) :

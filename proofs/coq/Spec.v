@@ -131,14 +131,16 @@ Fixpoint percepts (M : marker) (W : start) (pose : W) (doors : seq door) : seq p
 (** * Robots *)
 
 (** What the actions [E] of a robot do: in a state some actions are possible, each leads to a state, and there the
-    robot has a percept. *)
-Record environment (E : Type) := Environment {
+    robot has a percept, one of [O]. *)
+Record environment_of (O E : Type) := Environment {
   state : Type;
   first_state : state;
   possible : state -> E -> bool;
   next_state : state -> E -> state;
-  sense : state -> percept
+  sense : state -> O
 }.
+
+Notation environment := (environment_of percept).
 
 (** A robot that only moves, in a world with a marker. The state is its pose, the actions are the doors by which it
     leaves, and it can leave by a door that exists. *)
@@ -156,16 +158,17 @@ Inductive decision (E A : Type) := Act of E | Answer of A.
 Arguments Act {E A}.
 Arguments Answer {E A}.
 
-Definition strategy_of (E A : Type) := seq percept -> decision E A.
+Definition robot_of (O E A : Type) := seq O -> decision E A.
 
+Notation strategy_of := (robot_of percept).
 Notation strategy := (strategy_of door).
 
 Section Runs.
 
-Variables (E A : Type) (robot : strategy_of E A) (I : environment E).
+Variables (O E A : Type) (robot : robot_of O E A) (I : environment_of O E).
 
 (** The robot's percepts and its state after a number of decisions. *)
-Fixpoint situation (decisions : nat) : seq percept * state I :=
+Fixpoint situation (decisions : nat) : seq O * state I :=
   if decisions is earlier.+1 then
     let: (past, s) := situation earlier in
     if robot past is Act e then (rcons past (sense (next_state s e)), next_state s e) else (past, s)
@@ -200,15 +203,15 @@ Definition indistinguishable (M : marker) (V W : start) := alike M (facing V) (f
 
 (** The certificate for that: a relation of states that contains the first ones, whose related states have equal
     percepts, and that every action preserves. *)
-Definition bisimilar E (I : start -> environment E) (V W : start) :=
+Definition bisimilar O E (I : start -> environment_of O E) (V W : start) :=
   exists R : state (I V) -> state (I W) -> Prop,
     R (first_state (I V)) (first_state (I W)) /\
     forall s t, R s t -> sense s = sense t /\ forall e, R (next_state s e) (next_state t e).
 
 (** The robot answers with a map that is isomorphic to its world. *)
-Definition maps E (I : start -> environment E) (robot : strategy_of E embedded_graph) (W : start) :=
+Definition maps O E (I : start -> environment_of O E) (robot : robot_of O E embedded_graph) (W : start) :=
   exists2 map : embedded_graph, answers robot (I W) map & isomorphic map W.
 
 (** And its map also contains the robot's start. *)
-Definition maps_start E (I : start -> environment E) (robot : strategy_of E start) (W : start) :=
+Definition maps_start O E (I : start -> environment_of O E) (robot : robot_of O E start) (W : start) :=
   exists2 map : start, answers robot (I W) map & isomorphic_starts map W.

@@ -1,19 +1,20 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Markers.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
+    [MovableMarker.v], [Markers.v], [Aids.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
     terms; the proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions
-  Markers.
+  Markers Aids.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
   Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect GivenActionsCorrect CertificateNeeded
-  CertificateAttained.
+  CertificateAttained AidIsomorphisms AidsAtVertices Imitation Fronts Strings
+  HeldMarkers RoundTeams.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Figures(corridor_a, corridor_b, planar_a, planar_b).
-Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
+Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b, one_vertex).
 Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
 Import MovableMarker(handling_action, handling, can_handle, movable).
@@ -49,7 +50,7 @@ Proof. exact: Bisimulation.bisimilarP. Qed.
 
 (** In bisimilar starts every robot has the same history, whatever its actions and its strategy, and so gives the
     same answer. Paper: 2.2. *)
-Theorem bisimilar_history E A (robot : strategy_of E A) (I : start -> environment E) (V W : start) :
+Theorem bisimilar_history O E A (robot : robot_of O E A) (I : start -> environment_of O E) (V W : start) :
   bisimilar I V W ->
   (forall decisions, history robot (I V) decisions = history robot (I W) decisions) /\
   (forall answer, answers robot (I V) answer <-> answers robot (I W) answer).
@@ -494,6 +495,250 @@ by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
                       | apply: Impossible.bisimilar_impossible same' differ' robot].
 Qed.
 
+(** * Aids that move *)
+
+(** No aid of toposlam that moves shows more than an isomorphism keeps: with each of them, isomorphic starts are
+    bisimilar. Paper: beyond 2.3. *)
+Theorem isomorphic_starts_bisimilar (number : nat) (heading : bool) (V W : start) :
+  isomorphic_starts V W ->
+  [/\ bisimilar (with_aid (markers_alike number)) V W, bisimilar (with_aid (markers_distinct number)) V W,
+      bisimilar (with_aid movable_directional) V W, bisimilar (with_aid (team heading number)) V W
+    & bisimilar (with_aid (string number)) V W].
+Proof.
+split; apply: AidIsomorphisms.isomorphic_bisimilar => //.
+- exact: AidIsomorphisms.alike_keeps_isomorphisms.
+- exact: AidIsomorphisms.distinct_keeps_isomorphisms.
+- exact: AidIsomorphisms.directional_keeps_isomorphisms.
+- exact: AidIsomorphisms.team_keeps_isomorphisms.
+exact: AidIsomorphisms.string_keeps_isomorphisms.
+Qed.
+
+(** Any number of movable markers, alike or not, show only at which vertices they lie; and any number of other robots
+    that show no heading show only at which vertices they are. Paper: beyond 2.3. *)
+Theorem aids_at_vertices (number : nat) :
+  [/\ shows_only_vertices (markers_alike number), shows_only_vertices (markers_distinct number)
+    & shows_only_vertices (team false number)].
+Proof.
+split; [exact: AidsAtVertices.markers_alike_at_vertices | exact: AidsAtVertices.markers_distinct_at_vertices |].
+exact: AidsAtVertices.team_at_vertices.
+Qed.
+
+(** With an aid that shows only vertices, starts are bisimilar if their poses correspond such that degrees are equal,
+    each door leads to corresponding poses, and those at one vertex correspond to those at one vertex. Paper: beyond
+    2.3. *)
+Theorem aids_at_vertices_bisimilar (X : aid) (V W : start) (R : V -> W -> Prop) :
+  shows_only_vertices X -> same_vertices R -> bisimilar (with_aid X) V W.
+Proof. exact: AidsAtVertices.aids_at_vertices_bisimilar. Qed.
+
+(** So any two bouquets, worlds with one vertex, are bisimilar with such an aid if they have the same degree. Paper:
+    beyond 2.3. *)
+Theorem bouquets_bisimilar (X : aid) (V W : start) :
+  shows_only_vertices X -> one_vertex V -> one_vertex W -> degree (facing V) = degree (facing W) ->
+  bisimilar (with_aid X) V W.
+Proof.
+move=> only one_V one_W; rewrite !Multigraphs.one_vertex_degree // => same.
+exact: AidsAtVertices.aids_at_vertices_bisimilar only (AidsAtVertices.bouquets_same_vertices one_V one_W same).
+Qed.
+
+(** Such an aid does not suffice in worlds with parallel edges, nor in worlds with loops: the two worlds of three
+    parallel edges, in the plane and on the torus, are bisimilar with it, and so are those of two loops. No robot maps
+    both of a pair. Paper: beyond 2.3. *)
+Theorem aids_at_vertices_impossible (X : aid) :
+  shows_only_vertices X ->
+  forall robot : robot_of (nat * sightings X) (action_with (aid_action X)) embedded_graph,
+  [/\ ~ isomorphic theta_plane theta_torus, bisimilar (with_aid X) theta_plane theta_torus
+    & ~ (maps (with_aid X) robot theta_plane /\ maps (with_aid X) robot theta_torus)] /\
+  [/\ ~ isomorphic two_loops_plane two_loops_torus, bisimilar (with_aid X) two_loops_plane two_loops_torus
+    & ~ (maps (with_aid X) robot two_loops_plane /\ maps (with_aid X) robot two_loops_torus)].
+Proof.
+move=> only robot; have differ := Multigraphs.theta_not_isomorphic; have differ' := Multigraphs.loops_not_isomorphic.
+have same := AidsAtVertices.aids_at_vertices_bisimilar only AidsAtVertices.theta_same_vertices.
+have same' := AidsAtVertices.aids_at_vertices_bisimilar only AidsAtVertices.loops_same_vertices.
+by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
+                      | apply: Impossible.bisimilar_impossible same' differ' robot].
+Qed.
+
+(** A directional marker that can be carried has a front: if it stays where it is at the start, it shows what one
+    shows that cannot be carried. So have other robots that show their heading, if there is at least one. Paper:
+    beyond 2.3. *)
+Theorem aids_with_a_front (others : nat) :
+  has_front movable_directional /\ (0 < others -> has_front (team true others)).
+Proof. by split; [apply: Fronts.movable_directional_front | apply: Fronts.team_front]. Qed.
+
+(** Such an aid is as good as a directional marker: any robot with a directional marker can be simulated, if it takes
+    only doors that exist. The simulating robot gives the same answer in the same pose, does only what is possible,
+    and does no more actions. Paper: beyond 2.3. *)
+Theorem front_as_good_as_directional (X : aid) A (robot : strategy A) :
+  has_front X ->
+  exists robot' : robot_of (nat * sightings X) (action_with (aid_action X)) A,
+  forall W : start, possible_only robot (moving directional W) ->
+  forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
+  exists n',
+    [/\ robot' (history robot' (with_aid X W) n') = Answer answer,
+        (situation robot' (with_aid X W) n').2.1 = (situation robot (moving directional W) n).2,
+        possible_only robot' (with_aid X W)
+      & n' <= n].
+Proof.
+move=> [read front]; pose look := Fronts.read_front read; exists (Imitation.in_place_of look look robot).
+move=> W only n answer answered; have [n' [answered' same possible _ n'_le]] := Imitation.in_place_of_answers
+  (@Fronts.untouched_pose _ W) (Fronts.untouched_first (front W)) (Fronts.untouched_next (front W)) only answered.
+by exists n'; rewrite muln1 in n'_le.
+Qed.
+
+(** Starts that are bisimilar with such an aid are isomorphic, facing to facing. Paper: beyond 2.3. *)
+Theorem front_determines (X : aid) (V W : start) :
+  has_front X -> bisimilar (with_aid X) V W -> isomorphic_starts V W.
+Proof.
+move=> [read front] same; have maps_W U := Imitation.in_place_of_maps
+  (@Fronts.untouched_pose _ U) (Fronts.untouched_first (front U)) (Fronts.untouched_next (front U)).
+exact: Impossible.bisimilar_maps_start same (maps_W V) (maps_W W).
+Qed.
+
+(** One robot maps every world with such an aid. It knows where it is in its map, does only what is possible, and
+    makes at most m n + 2 m^2 (n - 1) moves. Paper: beyond 2.3. *)
+Theorem front_suffices (X : aid) :
+  has_front X ->
+  exists robot : robot_of (nat * sightings X) (action_with (aid_action X)) located,
+  forall W : start, exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let pose := (situation robot (with_aid X W) decisions).2.1 in
+    [/\ robot (history robot (with_aid X W) decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        possible_only robot (with_aid X W)
+      & decisions <= m * n + 2 * m ^ 2 * (n - 1)].
+Proof.
+move=> [read front]; pose look := Fronts.read_front read.
+exists (Imitation.in_place_of look look Mapper.locating_mapper) => W.
+have [map [n [answered located only _ n_le]]] := Imitation.in_place_of_locates
+  (@Fronts.untouched_pose _ W) (Fronts.untouched_first (front W)) (Fronts.untouched_next (front W)).
+by exists map, n; split=> //; move: n_le; rewrite muln1 /Correct.cost -mulnn subn1.
+Qed.
+
+(** A string as long as an edge, or longer, is as good as a directional marker, too: any robot with a directional
+    marker can be simulated, if it takes only doors that exist. The simulating robot gives the same answer in the same
+    pose, and does only what is possible. It makes at most 2 moves more, and does at most 3 times as many actions and
+    5 more. Paper: beyond 2.3. *)
+Theorem string_as_good_as_directional A (robot : strategy A) :
+  exists robot' : robot_of (nat * string_view) (action_with holding) A,
+  forall (W : start) (length : nat), 0 < length -> possible_only robot (moving directional W) ->
+  forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
+  let with_string := with_aid (string length) W in
+  exists n',
+    [/\ robot' (history robot' with_string n') = Answer answer,
+        (situation robot' with_string n').2.1 = (situation robot (moving directional W) n).2,
+        possible_only robot' with_string, doors_used robot' with_string n' <= n + 2
+      & n' <= 3 * n + 5].
+Proof.
+exists (Imitation.in_place_of (X := string 1) Strings.lay_string Strings.look_at_string robot).
+move=> W length length_gt0 only n answer answered.
+have [n' [answered' same possible used n'_le]] := Imitation.in_place_of_answers
+  (@Strings.laid_pose length W) (Strings.laid_first W length_gt0) (@Strings.laid_next length W) only answered.
+by exists n'; rewrite [n + 2]addnC [3 * n + 5]addnC [3 * n]mulnC; split=> //; rewrite -[n]muln1.
+Qed.
+
+(** Starts that are bisimilar with such a string are isomorphic, facing to facing. Paper: beyond 2.3. *)
+Theorem string_determines (length : nat) (V W : start) :
+  0 < length -> bisimilar (with_aid (string length)) V W -> isomorphic_starts V W.
+Proof.
+move=> length_gt0 same; have maps_W U := Imitation.in_place_of_maps
+  (@Strings.laid_pose length U) (Strings.laid_first U length_gt0) (@Strings.laid_next length U).
+exact: Impossible.bisimilar_maps_start same (maps_W V) (maps_W W).
+Qed.
+
+(** One robot maps every world with such a string, whatever its length. It knows where it is in its map, and does only
+    what is possible. It makes at most m n + 2 m^2 (n - 1) + 2 moves, and at most 3 (m n + 2 m^2 (n - 1)) + 5 actions:
+    moves, pick-ups and drops. Paper: beyond 2.3. *)
+Theorem string_suffices :
+  exists robot : robot_of (nat * string_view) (action_with holding) located,
+  forall (W : start) (length : nat), 0 < length -> exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let bound := m * n + 2 * m ^ 2 * (n - 1) in
+    let with_string := with_aid (string length) W in
+    let pose := (situation robot with_string decisions).2.1 in
+    [/\ robot (history robot with_string decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        possible_only robot with_string, doors_used robot with_string decisions <= bound + 2
+      & decisions <= 3 * bound + 5].
+Proof.
+exists (Imitation.in_place_of (X := string 1) Strings.lay_string Strings.look_at_string Mapper.locating_mapper).
+move=> W length length_gt0; have [map [n [answered located only used n_le]]] := Imitation.in_place_of_locates
+  (@Strings.laid_pose length W) (Strings.laid_first W length_gt0) (@Strings.laid_next length W).
+move: n_le used; rewrite /Correct.cost -mulnn subn1 muln1 addnC [2 + _]addnC mulnC => n_le used.
+by exists map, n.
+Qed.
+
+(** In worlds without loops and parallel edges any number of movable markers suffices, alike or not, but at least one:
+    one robot maps all of these worlds. It knows where it is in its map, and does only what is possible. For each
+    marker but one it does one action more than the bound for one marker allows: it picks that marker up, and keeps
+    it. Paper: beyond 2.3. *)
+Theorem movable_markers_suffice_simple (number : nat) (X : aid) :
+  0 < number -> X = markers_alike number \/ X = markers_distinct number ->
+  exists robot : robot_of (nat * sightings X) (action_with (aid_action X)) located,
+  forall W : start, simple W -> exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let pose := (situation robot (with_aid X W) decisions).2.1 in
+    [/\ robot (history robot (with_aid X W) decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        possible_only robot (with_aid X W)
+      & decisions <= number - 1 + (1 + m * ((n + 4) * (n - 1) + 4 * m + 8))].
+Proof.
+case: number => // held _ kind; rewrite subn1 /=.
+have mapper (W : start) : simple W -> exists map n,
+    [/\ MovableMapper.movable_mapper (history MovableMapper.movable_mapper (handling W) n) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W
+          & f (Algorithm1.robot map) = (situation MovableMapper.movable_mapper (handling W) n).2.1],
+        possible_only MovableMapper.movable_mapper (handling W)
+      & n <= 1 + edges W * ((vertices W + 4) * (vertices W - 1) + 4 * edges W + 8)].
+  move=> /MovableMapper.movable_mapper_maps[map [n at_n]]; exists map, n.
+  move: at_n; rewrite /MovableCost.round_cost -addnA [8 + _]addnC addnA subn1 /possible_only.
+  by case: (situation _ _ n).2 => pose lying [].
+case: kind => ->.
+- exists (Imitation.imitating MovableMapper.movable_mapper HeldMarkers.do_with_alike
+    (HeldMarkers.pick_up_alike held) HeldMarkers.look_at_alike) => W simple_W.
+  have [map [n [answered located only n_le]]] := mapper W simple_W.
+  have [n' [answered' [a [b [_ at_n']]] possible _ n'_le]] :=
+    Imitation.imitating_answers (HeldMarkers.alike_first held W) (@HeldMarkers.alike_next held W) only answered.
+  exists map, n'; rewrite at_n'; split=> //; apply: leq_trans n'_le _.
+  by rewrite muln1 leq_add2l.
+exists (Imitation.imitating MovableMapper.movable_mapper HeldMarkers.do_with_first
+  (HeldMarkers.pick_up_others held) HeldMarkers.look_at_first) => W simple_W.
+have [map [n [answered located only n_le]]] := mapper W simple_W.
+have [n' [answered' at_n' possible _ n'_le]] :=
+  Imitation.imitating_answers (HeldMarkers.distinct_first held W) (@HeldMarkers.distinct_next held W) only answered.
+exists map, n'; rewrite at_n'; split=> //; apply: leq_trans n'_le _.
+by rewrite muln1 leq_add2l.
+Qed.
+
+(** So does another robot that shows no heading: one robot maps every world without loops and parallel edges with
+    such robots, if there is at least one. It knows where it is in its map, and does only what is possible. If all
+    degrees are at most d, it does at most (2 d + 5) (m n + 2 m^2 (n - 1)) + 2 d + 4 actions: moves of both. Paper:
+    beyond 2.3. *)
+Theorem round_team_suffices_simple :
+  exists robot : robot_of (nat * seq companion) (action_with sending) located,
+  forall (W : start) (others d : nat), 0 < others -> simple W -> (forall p : W, degree p <= d) ->
+  exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let in_team := with_aid (team false others) W in
+    let pose := (situation robot in_team decisions).2.1 in
+    [/\ robot (history robot in_team decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        possible_only robot in_team
+      & decisions <= (2 * d + 5) * (m * n + 2 * m ^ 2 * (n - 1)) + (2 * d + 4)].
+Proof.
+pose look := RoundTeams.look_at_team.
+exists (Imitation.in_place_of (X := team false 1) look look Mapper.locating_mapper).
+move=> W [//|others] d _ simple_W small.
+have [map [n [answered located only _ n_le]]] := Imitation.in_place_of_locates
+  (@RoundTeams.waits_pose others W) (RoundTeams.waits_first others simple_W small)
+  (@RoundTeams.waits_next others W simple_W d small).
+exists map, n; split=> //; move: n_le.
+by rewrite /Correct.cost -mulnn subn1 addnC -addnS mulnC.
+Qed.
+
 (** * Folding *)
 
 (** A folded trail without open darts is the world: if the darts of one start map to the darts of another,
@@ -644,8 +889,8 @@ move=> maps_all W n answer answered; apply: CertificateNeeded.certificate_needed
 exact: Returns.robot_determined answered.
 Qed.
 
-(** The formula of the certificate: it is a lower bound for every robot that maps every world, in each world, and it is
-    attained, by the shortest walk with a complete folded trail. Paper: beyond 2.3. *)
+(** The formula of the certificate: it is a lower bound for every robot that maps every world, in each world, and
+    it is attained, by the shortest walk with a complete folded trail. Paper: beyond 2.3. *)
 Theorem certificate_length (W : start) :
   [/\ forall robot : strategy start, (forall V, maps_start (moving directional) robot V) ->
         forall n answer, robot (history robot (moving directional W) n) = Answer answer ->

@@ -71,8 +71,15 @@ mod tests {
     use super::*;
     use crate::theorems;
 
-    /// Theorems about markers that are not kinds: at a dead end, and two that are not adjacent.
-    const OTHERS: [&str; 2] = ["undirected_dead_end_suffices", "two_distant_impossible"];
+    /// Theorems about markers that are not kinds: at a dead end, and two that are not adjacent. And about aids that move.
+    const OTHERS: [&str; 6] = [
+        "undirected_dead_end_suffices",
+        "two_distant_impossible",
+        "aids_at_vertices_impossible",
+        "front_suffices",
+        "string_suffices",
+        "round_team_suffices_simple",
+    ];
 
     #[test]
     fn each_theorem_on_markers_is_in_the_table_once() {

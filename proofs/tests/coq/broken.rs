@@ -112,6 +112,14 @@ each_definition_matters! {
         "[|| turn pose i == d, traverse pose i == d |" => "[|| turn pose i == d |";
     an_arrow_needs_its_sense, "Markers.v":
         "(facing W) then PassedAlong" => "(facing W) then PassedAgainst";
+    a_robot_that_shows_no_heading_shows_only_its_vertex, "Aids.v":
+        "if heading then Some (findex clockwise pose other) else None."
+        => "Some (findex clockwise pose other).";
+    a_string_over_a_loop_needs_the_hand, "Aids.v":
+        "then omap (findex clockwise pose) (string_behind x) else None" => "then None else None";
+    a_marker_lies_where_it_was_dropped, "Aids.v":
+        "DropMarker i => set_nth None places i (Some pose)"
+        => "DropMarker i => set_nth None places i None";
     /// A test of the folding explorer that is not strict proves its hypothesis and refutes it.
     a_free_test_has_to_prove, "FoldingExplorer.v":
         "predicts K far h x entry & confirms K far h x entry"
