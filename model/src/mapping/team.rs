@@ -21,7 +21,7 @@ use crate::{
     injected_flaw::InjectedFlaw,
     percept::{Door, OtherRobot, Percept, Sighting, TeamView},
 };
-use meeting::{Meeting, Robot};
+use meeting::{Meeting, TeamMember};
 use rounds::Rounds;
 
 /// The state of a run with a team: the explorer's walk, and where the scouts are.
@@ -281,8 +281,8 @@ impl TeamRun {
                 may_be[map.vertex(far).at()] = false;
             }
         }
-        let others = (0..self.scouts.len()).filter(|other| *other != scout).map(Robot::Scout);
-        for other in [Robot::Explorer].into_iter().chain(others) {
+        let others = (0..self.scouts.len()).filter(|other| *other != scout).map(TeamMember::Scout);
+        for other in [TeamMember::Explorer].into_iter().chain(others) {
             if let Some(vertex) = self.place(other) {
                 may_be[vertex.at()] = false;
             }
@@ -291,10 +291,10 @@ impl TeamRun {
     }
 
     /// The vertex where a robot is, if that is known: the explorer, or one of the scouts.
-    fn place(&self, robot: Robot) -> Option<Vertex> {
+    fn place(&self, robot: TeamMember) -> Option<Vertex> {
         match robot {
-            Robot::Explorer => Some(self.map().vertex(self.walk.robot)),
-            Robot::Scout(at) => match &self.scouts[at] {
+            TeamMember::Explorer => Some(self.map().vertex(self.walk.robot)),
+            TeamMember::Scout(at) => match &self.scouts[at] {
                 Scout::At(pose) => Some(self.map().vertex(*pose)),
                 Scout::Beyond(end) => end.place,
             },
@@ -330,8 +330,8 @@ impl TeamRun {
             return Ok(true);
         }
         let (mut place, mut entry) = (known, None);
-        let others = (0..self.scouts.len()).filter(|other| *other != scout).map(Robot::Scout);
-        for other in [Robot::Explorer].into_iter().chain(others) {
+        let others = (0..self.scouts.len()).filter(|other| *other != scout).map(TeamMember::Scout);
+        for other in [TeamMember::Explorer].into_iter().chain(others) {
             let Some(vertex) = self.place(other) else { continue };
             let meeting = Meeting::of(scout, other, percept);
             if meeting.is_apart() {
@@ -342,8 +342,8 @@ impl TeamRun {
             }
             place = Some(vertex);
             let pose = match other {
-                Robot::Explorer => Some(self.walk.robot),
-                Robot::Scout(at) => self.scouts[at].pose(),
+                TeamMember::Explorer => Some(self.walk.robot),
+                TeamMember::Scout(at) => self.scouts[at].pose(),
             };
             if let (Some(pose), Meeting::Turned(clockwise, back)) = (pose, meeting) {
                 entry = entry.or(Some(self.turned(pose, clockwise, back)));
@@ -435,8 +435,9 @@ impl TeamRun {
             }
         }
         self.walk.robot = pose;
-        let is_found = (0..self.scouts.len())
-            .any(|scout| before[scout] && !Meeting::of(scout, Robot::Explorer, percept).is_apart());
+        let is_found = (0..self.scouts.len()).any(|scout| {
+            before[scout] && !Meeting::of(scout, TeamMember::Explorer, percept).is_apart()
+        });
         if is_found {
             self.report(MovableEvent::Found { vertex }, world);
         } else if was_candidate {
@@ -463,7 +464,7 @@ impl TeamRun {
             let edge = self.followed[at];
             let scout = self.scouts.iter().position(|scout| scout.is_beyond(edge));
             if let Some(scout) = scout
-                && let Some(vertex) = self.place(Robot::Scout(scout))
+                && let Some(vertex) = self.place(TeamMember::Scout(scout))
             {
                 self.validate_back_link(scout, edge, vertex, world)?;
             }
@@ -495,7 +496,7 @@ impl TeamRun {
             let percept = self.walk.go(door, world)?;
             self.rounds.explorer_moved();
             self.rounds.waited_for(scout);
-            let is_met = !Meeting::of(scout, Robot::Explorer, percept).is_apart();
+            let is_met = !Meeting::of(scout, TeamMember::Explorer, percept).is_apart();
             if is_met || InjectedFlaw::FirstDartIsIt.is_present() {
                 self.walk.edge = Some(edge);
                 self.walk.close_loop(dart, world)?;

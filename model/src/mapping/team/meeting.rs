@@ -4,7 +4,7 @@ use crate::percept::{Door, OtherRobot, Percept, Sighting, TeamView};
 
 /// A robot that may be where a scout is.
 #[derive(Clone, Copy)]
-pub(super) enum Robot {
+pub(super) enum TeamMember {
     Explorer,
     /// The scout with this number, from 0.
     Scout(usize),
@@ -20,15 +20,15 @@ pub(super) enum Meeting {
 }
 
 impl Meeting {
-    pub(super) fn of(scout: usize, other: Robot, percept: Percept) -> Self {
+    pub(super) fn of(scout: usize, other: TeamMember, percept: Percept) -> Self {
         use OtherRobot::{Here, HereAlong, WithSecond, WithSecondAlong};
         let Sighting::Team(TeamView(seen)) = percept.sighting else { return Self::Apart };
         let shown = |at: usize| seen.get(at).copied().unwrap_or_default();
         match (other, shown(scout)) {
-            (Robot::Explorer, Here) => Self::Together,
-            (Robot::Explorer, HereAlong(door)) => Self::Turned(door, Door::BACK),
-            (Robot::Explorer, _) => Self::Apart,
-            (Robot::Scout(other), one) => match (one, shown(other), shown(1)) {
+            (TeamMember::Explorer, Here) => Self::Together,
+            (TeamMember::Explorer, HereAlong(door)) => Self::Turned(door, Door::BACK),
+            (TeamMember::Explorer, _) => Self::Apart,
+            (TeamMember::Scout(other), one) => match (one, shown(other), shown(1)) {
                 (Here, Here, _) | (_, _, WithSecond) => Self::Together,
                 (HereAlong(one), HereAlong(other), _) => Self::Turned(one, other),
                 (_, _, WithSecondAlong(door)) if scout == 1 => Self::Turned(door, Door::BACK),
