@@ -249,6 +249,20 @@ mod tests {
         assert!(blocked > 0 || matches!(run.outcome, RobotOutcome::GaveUp(_)), "{run:?}");
     }
 
+    /// A scanner that does not look behind the robot, and with which it looks around beside openings. In these runs it does so
+    /// beside an alcove that the last scan before shows as its way, beside the door of a room, and where it is already on its
+    /// way into an alcove.
+    #[test]
+    fn an_alcove_beside_a_turn_is_no_dead_end_of_a_corridor() {
+        let scanner = ScannerParams::named("utm-30lx");
+        let sampler = WalkSampler { scanner, ..sampler(BuildingKind::Mixed, 5) };
+        let recovering = MappingMethod::Recovering(RecoveryConfig::default());
+        for number in [25, 35, 105] {
+            let run = sampler.run(number, recovering, &()).unwrap();
+            assert_eq!((&run.outcome, run.tally.wrong), (&RobotOutcome::Right, 0), "{run:?}");
+        }
+    }
+
     /// In this run what the robot derives contradicts itself.
     #[test]
     fn a_robot_that_recovers_ends_right_after_percepts_that_are_wrong() {
