@@ -11,7 +11,7 @@ use toposlam_vision::{
     place::SeenPlace,
 };
 
-use super::{CorridorExplorer, CorridorFailure, LeftPlace, ROBOT, Stop};
+use super::{CorridorExplorer, CorridorFailure, LeftPlace, ROBOT, Stop, trail::Turn};
 use crate::robot::Robot;
 
 /// Why a robot does not go on.
@@ -46,6 +46,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         let mut begin = start;
         let mut is_leaving = true;
         let mut tried: Option<Point2<f64>> = None;
+        let mut tried_turn: Option<Point2<f64>> = None;
         // The way from there without what it drove to look into arms, in metres.
         let mut along = 0.0;
         let no_way = loop {
@@ -60,14 +61,25 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                     }
                     begin = self.at();
                 }
-                StretchEnd::LookedAround => {}
+                // What it saw before may have led it aside.
+                StretchEnd::LookedAround => {
+                    self.heading = wrapped(self.back(ROBOT.leaving_measured) + PI);
+                }
                 StretchEnd::NoWay(no_way) => {
                     let at = self.at();
                     let is_new = tried.is_none_or(|tried| distance(tried, at) > ROBOT.no_junction);
-                    if !is_new || along <= ROBOT.bend_after || !self.finds_bend()? {
+                    if is_new && along > ROBOT.bend_after && self.finds_bend()? {
+                        tried = Some(at);
+                    } else if let Some((turn, before)) = self.turn_before_end(first, start, along)
+                        && tried_turn
+                            .is_none_or(|tried| distance(tried, turn.at) > ROBOT.same_place)
+                    {
+                        self.go_straight_on(turn)?;
+                        along = before;
+                        (tried, tried_turn, begin) = (None, Some(turn.at), self.at());
+                    } else {
                         break no_way;
                     }
-                    tried = Some(at);
                     is_leaving = true;
                 }
             }
@@ -90,22 +102,43 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         self.stand_at_end()
     }
 
+    /// Where it turned less than an arm before an end, and the length of its way to there: what ends may be an alcove, and the
+    /// corridor goes straight on.
+    fn turn_before_end(&self, first: usize, start: Point2<f64>, along: f64) -> Option<(Turn, f64)> {
+        let turn = self.trail.last_turn(first, self.params.arm.min_arm, ROBOT.turned)?;
+        let before = (along - distance(turn.at, self.at())).max(distance(start, turn.at));
+        (before > ROBOT.bend_after).then_some((turn, before))
+    }
+
+    /// Drives back to where it turned, and looks straight on.
+    fn go_straight_on(&mut self, turn: Turn) -> Result<(), Stop> {
+        let Turn { number, at, before } = turn;
+        self.drive_back(number, at)?;
+        self.trail.end_side_trip(number);
+        self.look_around()?;
+        self.heading = direction(before, at);
+        Ok(())
+    }
+
     /// It stands where there is no way but the one back.
     fn stand_at_end(&mut self) -> Result<(), Stop> {
         self.left = None;
         let at = self.at();
-        // Its heading may be that of a short way to look at something.
-        let before = self.trail.before_entering(at, ROBOT.near_place);
-        let back = before.map_or(wrapped(self.heading + PI), |before| direction(at, before));
-        self.stand(at, ROBOT.end_extent, vec![back])
+        self.stand(at, ROBOT.end_extent, vec![self.back(ROBOT.near_place)])
+    }
+
+    /// The direction to where it was when it was last this far from here. Its heading may be that of a short way to look at
+    /// something.
+    fn back(&self, far: f64) -> f64 {
+        let at = self.at();
+        let before = self.trail.before_entering(at, far);
+        before.map_or(wrapped(self.heading + PI), |before| direction(at, before))
     }
 
     /// Whether a robot that cannot go straight on sees another way than the one back, once it has looked around. Then it
     /// looks there.
     fn finds_bend(&mut self) -> Result<bool, Stop> {
-        let at = self.at();
-        let before = self.trail.before_entering(at, ROBOT.look_ahead);
-        let back = before.map_or(wrapped(self.heading + PI), |before| direction(at, before));
+        let back = self.back(ROBOT.look_ahead);
         self.look_around()?;
         let choice = WayChoice {
             towards: wrapped(back + PI - self.turn_of_map()),

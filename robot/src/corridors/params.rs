@@ -84,6 +84,8 @@ params! {
         bend_after: f64 = 3.0,
         /// ... and its way behind the bend is measured over this length.
         bend_length: f64 = 1.5,
+        /// A robot whose way leads this far aside from a straight line has turned: half of a corridor.
+        turned: f64 = 1.0,
         /// A way that is known for less than this has ended.
         at_end: f64 = 0.3,
         /// A robot without a way drives straight on up to this far from a wall.

@@ -1,9 +1,9 @@
 //! Where a robot has been, by odometry. Points are those of its frame.
 
-use std::ops::Range;
+use std::{f64::consts::FRAC_PI_2, ops::Range};
 
 use nalgebra::Point2;
-use toposlam_vision::geometry::distance;
+use toposlam_vision::geometry::{direction, distance, unit};
 
 /// Where a robot has taken its scans, in their order, and what of it was only to look at something.
 #[derive(Clone, Debug, Default)]
@@ -11,6 +11,16 @@ pub(super) struct Trail {
     points: Vec<Point2<f64>>,
     /// In their order.
     side_trips: Vec<Range<usize>>,
+}
+
+/// Where a robot turned on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turn {
+    /// The number of points of the trail until then.
+    pub number: usize,
+    pub at: Point2<f64>,
+    /// Where it was before.
+    pub before: Point2<f64>,
 }
 
 impl Trail {
@@ -58,14 +68,38 @@ impl Trail {
         self.without_side_trips().skip_while(is_outside).find(is_outside)
     }
 
+    /// Where the end of the way, of this length and not from before this number, is farthest aside from a straight line;
+    /// `None` if that is less than this.
+    pub(super) fn last_turn(&self, begin: usize, length: f64, aside: f64) -> Option<Turn> {
+        let (_, last) = self.numbered().next()?;
+        let (mut driven, mut previous) = (0.0, last);
+        let way = self.numbered().take_while(|&(number, point)| {
+            driven += distance(previous, point);
+            previous = point;
+            number >= begin && driven < length
+        });
+        let way: Vec<_> = way.collect();
+        let &(_, before) = way.last()?;
+        let across = unit(direction(before, last) + FRAC_PI_2);
+        let off = |point: Point2<f64>| (point - last).dot(&across).abs();
+        let (number, at) =
+            way.into_iter().max_by(|one, other| off(one.1).total_cmp(&off(other.1)))?;
+        (off(at) >= aside).then_some(Turn { number: number + 1, at, before })
+    }
+
     /// From the last point to the first, without side trips.
     pub(super) fn without_side_trips(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
+        self.numbered().map(|(_, point)| point)
+    }
+
+    /// The same with their numbers.
+    fn numbered(&self) -> impl Iterator<Item = (usize, Point2<f64>)> + '_ {
         let is_aside = |number: usize| {
             let later = self.side_trips.partition_point(|trip| trip.end <= number);
             self.side_trips.get(later).is_some_and(|trip| trip.contains(&number))
         };
         let points = self.points.iter().enumerate().rev();
-        points.filter(move |(number, _)| !is_aside(*number)).map(|(_, point)| *point)
+        points.filter(move |(number, _)| !is_aside(*number)).map(|(number, point)| (number, *point))
     }
 }
 
@@ -105,6 +139,21 @@ mod tests {
         assert_eq!(before, Some(Point2::new(2.0, 0.0)));
         assert_eq!(trail().before_entering(Point2::new(2.0, 5.0), 1.0), None);
         assert_eq!(trail().without_side_trips().count(), 7);
+    }
+
+    #[test]
+    fn a_robot_has_turned_where_its_way_is_farthest_aside_from_a_straight_line() {
+        let turn = |aside: f64, begin| {
+            let mut trail = Trail::default();
+            (0..20).for_each(|x| trail.push(Point2::new(f64::from(x), 0.0)));
+            (1..=4).for_each(|y| trail.push(Point2::new(19.0, aside * f64::from(y))));
+            trail.last_turn(begin, 9.5, 1.0)
+        };
+        let (number, at, before) = (20, Point2::new(19.0, 0.0), Point2::new(14.0, 0.0));
+        assert_eq!(turn(1.0, 0), Some(Turn { number, at, before }));
+        assert_eq!(turn(0.2, 0), None, "that is less than half of a corridor");
+        assert_eq!(turn(1.0, 19), None, "it has driven straight on since");
+        assert_eq!(trail().last_turn(0, 9.5, 1.0), None, "a side trip is no turn");
     }
 
     #[test]
