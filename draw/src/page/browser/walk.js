@@ -118,7 +118,8 @@ function restart() {
 function undo() {
   stop();
   if (steps.length === 1) return;
-  relation?.visit(pair(steps.pop().states), -1);
+  const { states } = steps.pop();
+  relation?.visit(pair(states), -1);
   percepts.removeLast();
   show();
 }
