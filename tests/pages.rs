@@ -19,7 +19,7 @@ fn open(script: &str, name: &str, commands: &[(&str, &str)]) {
 }
 
 /// Figure 1: a random walk in its two worlds shows the same percepts in both as long as the marker does not point.
-/// With a directional marker a walk distinguishes them.
+/// With a directional marker a walk distinguishes them. Other robots and a string are sent and laid by hand.
 #[test]
 #[ignore = "it takes long: `.ci/run`"]
 fn the_percepts_of_figure_1_are_equal_until_the_marker_points() {
@@ -30,9 +30,17 @@ fn the_percepts_of_figure_1_are_equal_until_the_marker_points() {
         "directional",
         "two-distinct",
         "movable",
+        "movable-directional",
+        "team-2",
+        "string-2",
     ];
     let commands = kinds.map(|marker| {
-        let kind = if marker == "undirected" { "alike" } else { "apart" };
+        let kind = match marker {
+            "undirected" => "alike",
+            "team-2" => "team",
+            "string-2" => "string",
+            _ => "apart",
+        };
         let worlds = "worlds/figure-1a.toml worlds/figure-1b.toml";
         (kind, format!("compare {worlds} --marker {marker} --html"))
     });

@@ -6,12 +6,13 @@ use std::{borrow::Cow, fmt::Write as _, fs};
 
 use serde_json::{Value, json};
 use toposlam_model::{
-    aid::{Action, Aid, AidKind, FEW_STATES, State},
+    aid::{AIDS, Action, Aid, AidKind, FEW_STATES, State},
     ambiguity::{Bisimulation, Comparison},
     check::judge_map,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     folding::fold,
+    format::named_world::NamedWorld,
     isomorphism::{Candidate, as_discovered},
     mapping::{ExploredMap, Flaw},
     marker::Directional,
@@ -51,6 +52,11 @@ fn answers(name: &str, cases: &[Value]) -> Option<Vec<String>> {
     Some(answers)
 }
 
+/// The random number after this one.
+fn next(seed: u32) -> u32 {
+    seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)
+}
+
 /// A walk of a robot from the start of a world.
 struct Walk {
     percepts: Vec<Percept>,
@@ -63,7 +69,7 @@ impl Walk {
         let mut world = GraphWorld::with_aid(graph, marker, Dart(0));
         let mut walk = Self { percepts: vec![world.sensed()], actions: Vec::new() };
         for _ in 0..length {
-            *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            *seed = next(*seed);
             let possible = world.actions();
             let action = possible[(*seed >> 16) as usize % possible.len()];
             world.act(action).unwrap();
@@ -151,22 +157,22 @@ fn the_folded_trails_of_the_game_have_the_same_open_doors() {
     assert!(expected.iter().any(|open| open == "0") && expected.iter().any(|open| open != "0"));
 }
 
-/// Every marker in every pose of every start with up to 4 edges, placed by each dart.
+/// Every aid as it is at a start, in every pose of every start with up to 4 edges, placed by each dart.
 #[test]
-fn the_sightings_of_each_marker_are_those_of_the_specification() {
+fn the_sightings_of_each_aid_are_those_of_the_specification() {
     let (mut cases, mut expected) = (Vec::new(), Vec::new());
     for graph in starts(1..=4) {
-        for &marker in FEW_STATES {
-            for placed in graph.darts().step_by(3) {
-                let placed_by = marker.placed(&graph, placed);
+        for aid in AIDS {
+            for facing in graph.darts().step_by(3) {
+                let placed = aid.placed(&graph, facing);
                 let sighting = |pose| {
-                    let state = State { pose, placed: placed_by.clone() };
-                    json!(marker.sighting(&graph, &state))
+                    let state = State { pose, placed: placed.clone() };
+                    json!(aid.sighting(&graph, &state))
                 };
                 expected.push(graph.darts().map(sighting).collect::<Value>().to_string());
                 cases.push(json!({
-                    "rule": "sightings", "marker": marker.name(),
-                    "world": lists(&graph), "placed": end(&graph, placed),
+                    "rule": "sightings", "marker": aid.name(),
+                    "world": lists(&graph), "facing": end(&graph, facing),
                 }));
             }
         }
@@ -175,15 +181,57 @@ fn the_sightings_of_each_marker_are_those_of_the_specification() {
     assert_eq!(answers, expected);
 }
 
-/// Every two starts with up to 2 edges, and some with 3, for each marker.
+/// What a robot senses and can do: after each action of a random walk, its state in words, its percept and its actions.
+/// From every start with up to 3 edges, and from some with 4.
+#[test]
+fn robots_with_each_aid_do_on_a_page_what_the_specification_says() {
+    let some = starts(4..=4).into_iter().step_by(7);
+    let (mut cases, mut expected, mut seed) = (Vec::new(), Vec::new(), 3);
+    for graph in starts(1..=3).into_iter().chain(some) {
+        let named = NamedWorld::numbered("world", "", graph, Some(Dart(0)));
+        let graph = &named.graph;
+        for aid in AIDS {
+            for facing in graph.darts().step_by(3) {
+                let length = if aid.moves() { 30 } else { 12 };
+                let mut world = GraphWorld::with_aid(graph, aid, facing);
+                let (mut actions, mut shown) = (Vec::new(), Vec::new());
+                loop {
+                    let possible = world.actions();
+                    let words: Vec<_> = possible.iter().map(Action::to_string).collect();
+                    let state = named.state_text(&aid, &world.state());
+                    shown.push(json!([state, world.sensed().to_string(), words]));
+                    if actions.len() == length {
+                        break;
+                    }
+                    seed = next(seed);
+                    let action = possible[(seed >> 16) as usize % possible.len()];
+                    world.act(action).unwrap();
+                    actions.push(action.to_string());
+                }
+                expected.push(Value::from(shown).to_string());
+                cases.push(json!({
+                    "rule": "walk", "marker": aid.name(), "world": lists(graph),
+                    "vertices": named.vertex_names, "facing": end(graph, facing), "actions": actions,
+                }));
+            }
+        }
+    }
+    let Some(answers) = answers("scripts-aids", &cases) else { return };
+    for (case, (answer, expected)) in cases.iter().zip(answers.iter().zip(&expected)) {
+        assert_eq!(answer, expected, "{case}");
+    }
+}
+
+/// Every two starts with up to 2 edges, and some with 3; for the aids with more states, some of the pairs.
 #[test]
 fn the_comparisons_of_the_pages_are_those_of_the_specification() {
     let some = starts(3..=3).into_iter().step_by(9);
     let worlds: Vec<_> = starts(1..=2).into_iter().chain(some).collect();
     let (mut cases, mut expected, mut apart) = (Vec::new(), Vec::new(), 0);
-    for &marker in FEW_STATES {
+    for marker in AIDS {
+        let step = if FEW_STATES.contains(&marker) { 1 } else { 5 };
         for (number, one) in worlds.iter().enumerate() {
-            for other in &worlds[number..] {
+            for other in worlds[number..].iter().step_by(step) {
                 let facing = Dart(number as u32 % other.dart_count() as u32);
                 cases.push(json!({
                     "rule": "compare", "marker": marker.name(), "worlds": [lists(one), lists(other)],

@@ -121,8 +121,8 @@ fn marker_kinds() -> impl TypedValueParser<Value = AidKind> {
     PossibleValuesParser::new(kinds).try_map(|name| aid::named(&name))
 }
 
-/// Parses the name of a marking aid that the pages know.
-fn page_aids() -> impl TypedValueParser<Value = AidKind> {
+/// Parses the name of a marking aid that the page of `play` knows.
+fn play_aids() -> impl TypedValueParser<Value = AidKind> {
     PossibleValuesParser::new(FEW_STATES.iter().map(|aid| aid.name()))
         .try_map(|name| aid::named(&name))
 }

@@ -10,7 +10,7 @@ use toposlam_model::{aid::AidKind, enumerate::Class, format::named_world::NamedW
 use super::{
     CliError, Outcome,
     exit_codes::help_end,
-    input, output, page_aids,
+    input, output, play_aids,
     progress::{Progress, StopSignal},
     text::vertices,
 };
@@ -42,7 +42,7 @@ pub(super) struct PlayArguments {
     world: Option<PathBuf>,
     /// The marker: none, undirected, directional, undirected-edge, directed-edge, two-identical, two-distinct or
     /// movable
-    #[arg(long, visible_alias = "aid", default_value = "directional", value_name = "KIND", value_parser = page_aids())]
+    #[arg(long, visible_alias = "aid", default_value = "directional", value_name = "KIND", value_parser = play_aids())]
     marker: AidKind,
     /// Number of edges of a random world, from 1 to 8
     #[arg(

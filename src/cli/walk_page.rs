@@ -3,21 +3,19 @@
 use std::path::Path;
 
 use toposlam_model::{
-    aid::{AidKind, FEW_STATES},
-    ambiguity::has_more_states,
-    embedded_graph::Dart,
+    aid::{Aid, AidKind},
     format::named_world::NamedWorld,
 };
 
 use super::{CliError, output, text::grouped};
 use crate::page::{WalkPage, page};
 
-/// The most states of a world on a page.
-const MOST_STATES: usize = 20_000;
+/// The most darts of a world on a page.
+const MOST_DARTS: usize = 20_000;
 
 pub(crate) fn write(path: &Path, content: &WalkPage) -> Result<(), CliError> {
     for world in content.worlds {
-        check_states(path, world, content.marker)?;
+        check_world(path, world, content.marker)?;
     }
     output::write_whole(path, page(content).as_bytes())
 }
@@ -25,22 +23,22 @@ pub(crate) fn write(path: &Path, content: &WalkPage) -> Result<(), CliError> {
 /// Checks that a page can show a world.
 ///
 /// # Errors
-/// Returns an error if the robot can be in too many states.
-pub(super) fn check_states(
+/// Returns an error if it is too large, or if the aid cannot be seen everywhere in it.
+pub(super) fn check_world(
     path: &Path,
     world: &NamedWorld,
     marker: AidKind,
 ) -> Result<(), CliError> {
-    if !FEW_STATES.contains(&marker) {
-        let known: Vec<_> = FEW_STATES.iter().map(|aid| aid.name()).collect();
-        let cause = format!("a page shows no {}; it shows {}", marker.name(), known.join(", "));
-        return Err(CliError::at("--html", cause));
+    if !marker.is_seen_everywhere(&world.graph) {
+        let aid = marker.name();
+        let cause =
+            format!("a page shows no {aid} in {}: a vertex has too many doors for it", world.name);
+        return Err(CliError::in_file(path, cause));
     }
-    let start = world.start.unwrap_or(Dart(0));
-    if !has_more_states(&world.graph, marker, start, MOST_STATES) {
+    if world.graph.dart_count() <= MOST_DARTS {
         return Ok(());
     }
-    let most = grouped(MOST_STATES as u128);
-    let cause = format!("{} has more than the {most} states that a page can show", world.name);
+    let most = grouped(MOST_DARTS as u128);
+    let cause = format!("{} has more than the {most} darts that a page can show", world.name);
     Err(CliError::in_file(path, cause))
 }

@@ -291,7 +291,7 @@ async function carry(page, file) {
       await claimIfKnown(page, robot);
     } else {
       if (step % 2) await page.keyboard.press(action[0]);
-      else await page.getByRole("button", { name: action, exact: true }).click();
+      else await page.getByRole("button", { name: action.replace("-", " "), exact: true }).click();
       assert.match((await shown(page)).percept, action === "drop" ? /, marker$/ : /; you carry the marker$/);
     }
     assert.equal(await page.locator(".here .carrying").count(), (await shown(page)).percept.endsWith("carry the marker") ? 1 : 0);

@@ -8,6 +8,7 @@
 //   judge     `right` or the kind of fault of a map
 //   fold      the number of open doors of the folded trail of a walk with a directional marker
 //   sightings what the robot senses in each pose, as a list
+//   walk      before and after each action of a walk: the state of the robot, its percept, and what it can do
 //   other     the smallest other world that explains a walk, as lists; or null
 //   compare   of two worlds: the shortest walk that distinguishes them, or the number of pairs of states that the robots can
 //             reach; and the pose in which the second robot begins
@@ -17,10 +18,10 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 
 const [folder, cases] = process.argv.slice(2);
-const scripts = ["graph.js", "marker.js", "play_map.js", "play_judge.js", "play_search.js", "comparison.js"];
+const scripts = ["graph.js", "marker.js", "walk_state.js", "play_map.js", "play_judge.js", "play_search.js", "comparison.js"];
 const source = scripts.map((name) => readFileSync(join(folder, name), "utf8")).join("\n");
-const names = "Graph, WorldSearch, foldedTrail, faultOf, sightings, compareWorlds";
-const { Graph, WorldSearch, foldedTrail, faultOf, sightings, compareWorlds } = new Function(
+const names = "Graph, WorldSearch, foldedTrail, faultOf, Robot, WalkState, compareWorlds";
+const { Graph, WorldSearch, foldedTrail, faultOf, Robot, WalkState, compareWorlds } = new Function(
   `${source}\nreturn { ${names} };`,
 )();
 
@@ -33,11 +34,27 @@ const rules = {
   fold({ percepts, actions }) {
     return String(foldedTrail(percepts, actions).open().length);
   },
-  sightings({ marker, world, placed }) {
+  sightings({ marker, world, facing }) {
     const graph = Graph.of(world);
-    const all = graph.far.map((_, pose) => sightings(marker, graph, graph.dart(placed), pose));
+    const { aid, placed } = Robot.start(marker, graph, graph.dart(facing));
+    const all = graph.far.map((_, pose) => aid.sightings(graph, placed, pose));
     assert.ok(all.every((possible) => possible.length === 1));
     return JSON.stringify(all.flat());
+  },
+  walk({ marker, world, vertices, facing, actions }) {
+    const graph = Graph.of(world);
+    const states = [new WalkState({ graph, vertices }, Robot.start(marker, graph, graph.dart(facing)))];
+    for (const action of actions) {
+      const before = states.at(-1);
+      const text = before.text;
+      states.push(before.actions.get(action));
+      assert.equal(before.text, text, "an action leaves the state before it as it was");
+    }
+    for (const { words, robot } of states) {
+      assert.ok(words.length > 0 && !/undefined|null|NaN/.test(words), words);
+      for (const { dart, drawn } of robot.parts) assert.ok(graph.vertex(dart) !== undefined && drawn !== undefined);
+    }
+    return JSON.stringify(states.map((state) => [state.text, state.percept, [...state.actions.keys()]]));
   },
   other({ marker, world, percepts, actions }) {
     const truth = Graph.of(world);

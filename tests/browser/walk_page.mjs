@@ -1,8 +1,9 @@
 // Tests the walk pages in a headless Chromium. If a test fails, the exit code is 1 and there is one message.
 //
-//   node walk_page.mjs CHROMIUM alike=FILE apart=FILE ...
+//   node walk_page.mjs CHROMIUM alike=FILE apart=FILE team=FILE string=FILE ...
 //
-// alike: no walk distinguishes the two worlds of the page; apart: the page has one that does.
+// alike: no walk distinguishes the two worlds of the page; apart: the page has one that does; team, string: figure 1 with
+// two robots, and with a string as long as two edges.
 
 import assert from "node:assert/strict";
 import { DESK, assertFitsPhone, photograph, seeded, visitAll } from "./visits.mjs";
@@ -120,7 +121,7 @@ async function chooseAndFind(page, file) {
     await photograph(page, file, marker);
   }
   // The robots carry the marker from the hub to the rim.
-  await page.getByRole("button", { name: "pick-up" }).click();
+  await page.getByRole("button", { name: "pick up" }).click();
   assert.equal(await page.locator(".world .carrying").count(), 2);
   assert.equal(await page.locator(".marker-place").first().textContent(), "The robot carries the marker.");
   await page.locator("main").click({ position: { x: 2, y: 2 } });
@@ -183,6 +184,55 @@ async function tellApart(page) {
   return { walk: walk.join(" ") };
 }
 
+const press = (page, ...names) =>
+  names.reduce((before, name) => before.then(() => page.getByRole("button", { name, exact: true }).click()), Promise.resolve());
+const places = (page) => page.locator(".marker-place").allTextContents();
+/** What both robots perceive. */
+async function perceived(page) {
+  const { cells } = (await shown(page)).rows.at(-1);
+  assert.equal(cells[2], cells[4]);
+  return cells[2];
+}
+
+/** Robot 2 goes ahead, the explorer follows it, and Undo brings both back. */
+async function sendAhead(page) {
+  assert.equal(await perceived(page), "4 doors, robot 2 here along door 0");
+  assert.equal(await page.locator(".other-robot path").count(), 2);
+  await press(page, "send robot 2 through door 1");
+  assert.equal(await perceived(page), "4 doors, robot 2 elsewhere at 3 doors");
+  assert.deepEqual((await shown(page)).states, ["x:0&2@b:1", "X:0&2@B:1"]);
+  assert.deepEqual(await places(page), ["Robot 2 is at b, by the small number 1.", "Robot 2 is at B, by the small number 1."]);
+  assert.match((await shown(page)).status, /^Step 1, send robot 2 through door 1: both perceive/);
+  await page.keyboard.press("1");
+  assert.equal(await perceived(page), "3 doors, robot 2 here along door 0");
+  await press(page, "send robot 2 through door 0, back", "Undo", "Undo");
+  assert.deepEqual((await shown(page)).states, ["x:0&2@b:1", "X:0&2@B:1"]);
+  await page.locator("#marker").selectOption("team-3-round");
+  assert.equal(await page.locator(".other-robot circle").count(), 4);
+  await press(page, "send robot 3 through door 2");
+  assert.equal(await perceived(page), "4 doors, robot 2 here, robot 3 elsewhere at 3 doors");
+  return { walked: (await shown(page)).states };
+}
+
+/** The string is laid over two edges, its end is dropped, and taken back. */
+async function layString(page, file) {
+  assert.equal(await perceived(page), "4 doors, fixed end");
+  await press(page, "door 1", "door 2");
+  assert.equal(await page.locator(".world .string").count(), 4);
+  assert.match((await places(page))[0], /^The string is fixed at x \(dotted\), runs to b, then d, and the robot holds/);
+  await photograph(page, file, "laid");
+  await page.keyboard.press("1");
+  const short = await shown(page);
+  assert.deepEqual([short.rows.length, short.status], [3, "The string is too short for door 1."]);
+  await page.keyboard.press("d");
+  assert.match(await perceived(page), /^3 doors, string through door 0, free end$/);
+  await press(page, "door 1", "door 0, back");
+  await press(page, "pick up", "door 2");
+  assert.match(await perceived(page), /^3 doors, string through door \d, from the hand through door \d$/);
+  assert.equal(await page.locator(".world .string").count(), 2);
+  return { walked: (await shown(page)).states };
+}
+
 /** Nothing to scroll sideways on a phone, and doors that a finger hits. */
 async function holdAsPhone(page) {
   await assertFitsPhone(page);
@@ -198,7 +248,7 @@ async function holdAsPhone(page) {
 
 async function visit(page, kind, file) {
   await photograph(page, file, "start");
-  const found = kind === "alike" ? await walkAlike(page) : await tellApart(page);
+  const found = await { alike: walkAlike, apart: tellApart, team: sendAhead, string: layString }[kind](page, file);
   await photograph(page, file, "light");
   await page.emulateMedia({ colorScheme: "dark" });
   await photograph(page, file, "dark");
@@ -214,4 +264,4 @@ async function visit(page, kind, file) {
   return found;
 }
 
-await visitAll(["alike", "apart"], visit);
+await visitAll(["alike", "apart", "team", "string"], visit);

@@ -126,7 +126,7 @@ impl ReportedRun {
             return write_drawing(path, &run.picture());
         }
         for world in [Some(world), beside.as_ref().map(|(_, world)| world)].into_iter().flatten() {
-            walk_page::check_states(path, world, marker)?;
+            walk_page::check_world(path, world, marker)?;
         }
         let ending = self.message.as_deref().unwrap_or("The map and the pose are right");
         let end = if ending.ends_with('?') { "" } else { "." };

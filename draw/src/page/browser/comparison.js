@@ -4,25 +4,8 @@
 /** The most pairs of states that are looked at: for more, a page would have to be waited for. */
 const MOST_PAIRS = 100_000;
 
-/** The poses in which the robot may begin, given the marker: the facing dart, then the others in their order. */
-function startsOf(marker, graph, facing) {
-  const far = graph.opposite(facing);
-  const around = (dart) => graph.darts(graph.vertex(dart));
-  const others = {
-    none: () => [...graph.far.keys()],
-    undirected: () => around(facing),
-    movable: () => around(facing),
-    "two-distinct": () => around(facing),
-    "undirected-edge": () => [far],
-    "directed-edge": () => [far],
-    "two-identical": () => [...around(facing), ...around(far)].sort((one, two) => one - two),
-    directional: () => [],
-  };
-  return [...new Set([facing, ...others[marker]()])];
-}
-
-/** Where the marker is, as a text that is equal for places of the marker that are alike. */
-const placeKey = ({ marker, graph, placed }) => (marker === MOVABLE && placed !== null ? graph.vertex(placed) : String(placed));
+/** The poses in which the robot may begin, given the aid: the facing dart, then the others in their order. */
+const startsOf = (marker, graph, facing) => [...new Set([facing, ...AIDS[marker].starts(graph, facing)])];
 
 /**
  * Compares what two robots perceive: `walk` is the shortest one on which they perceive something different, the least of
@@ -31,7 +14,7 @@ const placeKey = ({ marker, graph, placed }) => (marker === MOVABLE && placed !=
  */
 function compareRobots(robots, most) {
   const steps = [{ robots, before: null, action: null }];
-  const key = (pair) => pair.map((robot) => `${robot.pose} ${placeKey(robot)}`).join(" ");
+  const key = (pair) => pair.map((robot) => `${robot.pose} ${robot.placed}`).join(" ");
   const seen = new Set([key(robots)]);
   for (const step of steps) {
     const [here, there] = step.robots.map((robot) => perceptText(robot.percept()));
@@ -59,7 +42,7 @@ function compareWorlds(marker, [[graph, facing], [other, otherFacing]], poses = 
   let left = MOST_PAIRS;
   let first;
   for (const pose of poses) {
-    const robots = [new Robot(marker, graph, facing), new Robot(marker, other, pose, otherFacing)];
+    const robots = [Robot.start(marker, graph, facing), Robot.start(marker, other, pose, otherFacing)];
     const found = { robots, ...compareRobots(robots, left) };
     if (found.walk === null) return found;
     first ??= found;

@@ -11,7 +11,7 @@ const still = matchMedia("(prefers-reduced-motion: reduce)");
 const figures = [...document.querySelectorAll(".world")];
 const panels = figures.map((figure) => new Panel(figure, () => {}));
 /** The robots of the last step; null where an action is not possible. */
-let robots = sides.map(({ graph, facing }) => new Robot(data.marker, graph, facing));
+let robots = sides.map(({ graph, facing }) => Robot.start(data.marker, graph, facing));
 const steps = data.steps.map(({ action, percept }) => {
   if (action !== null) {
     robots = robots.map((robot) => (robot?.actions().includes(action) ? robot.after(action) : null));
@@ -27,7 +27,6 @@ let at = 0;
 let timer = null;
 
 const NOT_POSSIBLE = "not possible";
-const called = (action) => (action === null ? "the start" : isDoor(action) ? `door ${action}` : action);
 
 const rows = steps.map((step, number) => {
   const [here, ...beside] = step.states;
@@ -50,7 +49,7 @@ function show(number, duration = 0) {
     const state = states[side];
     figures[side].classList.toggle("differs", at === difference);
     figures[side].querySelector(".state").textContent = state?.text ?? "";
-    figures[side].querySelector(".marker-place").textContent = state ? markerText(state) : "";
+    figures[side].querySelector(".marker-place").textContent = state ? state.words : "";
     figures[side].querySelector(".percept").textContent = side === 0 ? percept : (state?.percept ?? NOT_POSSIBLE);
     if (state) panel.show(state, () => true, still.matches ? 0 : duration);
   }
@@ -61,7 +60,7 @@ function show(number, duration = 0) {
   slider.setAttribute("aria-valuetext", now);
   find(".now").textContent = now;
   const apart = at === difference ? ` Here they differ: ${states[1]?.percept ?? NOT_POSSIBLE}.` : "";
-  say(`Step ${at}, ${called(action)}: ${percept}.${apart}`);
+  say(`Step ${at}, ${action === null ? "the start" : called(action)}: ${percept}.${apart}`);
 }
 
 function pause() {

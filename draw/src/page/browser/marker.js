@@ -1,5 +1,6 @@
-// The kinds of markers, as in the specification: what a robot senses of each, and where it is. A marker is placed by a
-// dart: the one behind the robot at the start, or behind it where it dropped the marker; null while the robot carries it.
+// The marking aids, as in the specification: where their parts are, what a robot senses of them, and what it can do with
+// them. A place is a dart, or null for a part that the robot holds. A fixed marker has one: the dart behind the robot at the
+// start.
 
 const NOTHING = "no marker";
 const PASSED = "past the mark";
@@ -10,53 +11,270 @@ const MOVABLE = "movable";
 const PICK_UP = "pick-up";
 const DROP = "drop";
 
-/** What a robot that came in by the dart `pose` may sense of the marker: several if an open dart decides. */
-function sightings(marker, graph, placed, pose) {
-  if (placed === null || marker === "none") return [NOTHING];
-  const far = graph.opposite(placed);
-  const [here, there] = [placed, far].map((dart) => dart !== null && graph.vertex(dart) === graph.vertex(pose));
-  switch (marker) {
-    case "directional":
-      return [here ? `marker along door ${graph.door(pose, placed)}` : NOTHING];
-    case "undirected-edge":
-      return [pose === placed || pose === far ? PASSED : NOTHING];
-    case "directed-edge":
-      return [pose === placed ? AGAINST : pose === far ? ALONG : NOTHING];
-    case "two-identical": {
-      const known = here + there;
-      return (far === null ? [known, known + 1] : [known]).map((count) => [NOTHING, "marker", "2 markers"][count]);
-    }
-    case "two-distinct": {
-      const seen = (second) => [[NOTHING, "second marker"], ["first marker", "first and second marker"]][Number(here)][Number(second)];
-      return far === null ? [seen(false), seen(true)] : [seen(there)];
-    }
-    default:
-      return [here ? "marker" : NOTHING];
-  }
+/** The names of markers that look different; a drawing shows each in another way. */
+const LOOKS = ["first", "second", "third", "fourth"];
+/** How the rings of these markers are drawn, in words. */
+const DRAWN_AS = ["", " (dashed)", " (dotted)", " (dashed and dotted)"];
+
+/** `1`, `1 and 2`, `1, 2 and 3`. */
+const listed = (names) => (names.length > 1 ? `${names.slice(0, -1).join(", ")} and ${names.at(-1)}` : names.join());
+
+const around = (graph, dart) => graph.darts(graph.vertex(dart));
+const isAt = (graph, place, pose) => place !== null && graph.vertex(place) === graph.vertex(pose);
+const ends = (graph, dart) => [dart, graph.opposite(dart)].filter((end) => end !== null);
+const replaced = (places, at, place) => places.map((before, index) => (index === at ? place : before));
+
+const lying = (count) => [NOTHING, "marker"][count] ?? `${count} markers`;
+const these = (numbers) => (numbers.length === 0 ? NOTHING : `${listed(numbers.map((at) => LOOKS[at]))} marker`);
+const pointing = (graph, along, pose) =>
+  isAt(graph, along, pose) ? `marker along door ${graph.door(pose, along)}` : NOTHING;
+
+/**
+ * An aid, with what a fixed marker does. Its own are:
+ *
+ * - `sightings(graph, places, pose)`: what a robot that came in by the dart `pose` may sense; several if an open dart decides;
+ * - `starts(graph, facing)`: the poses, besides the facing dart, in which the robot may begin;
+ * - `parts(graph, places)`: what a drawing shows: darts, and how each is drawn;
+ * - `words(places, names)`: where it is, in words;
+ * - `text(places, names)`: its state, after the pose of the robot; `signs` explains it;
+ * - `actions(graph, places, pose)` beside doors, and the places after one by `act`;
+ * - `leave(graph, places, dart)`: the places after the robot left by the dart, or null if it cannot.
+ */
+const aid = (own) => ({
+  thing: "the marker",
+  signs: "",
+  placed: (graph, facing) => [facing],
+  text: () => "",
+  actions: () => [],
+  act: (graph, places) => places,
+  leave: (graph, places) => places,
+  ...own,
+});
+
+const HELD = "The robot carries the marker.";
+/** One marker that lies at a vertex. */
+const LYING = {
+  sightings: (graph, [place], pose) => [isAt(graph, place, pose) ? "marker" : NOTHING],
+  starts: around,
+  parts: (graph, [place]) => [{ dart: place, drawn: "lying" }],
+  words: ([place], { vertex }) => `The marker lies at ${vertex(place)}.`,
+};
+/** One marker that points along a dart, or is carried. */
+const POINTING = {
+  sightings: (graph, [along], pose) => [pointing(graph, along, pose)],
+  starts: () => [],
+  parts: (graph, [along]) => (along === null ? [] : [{ dart: along, drawn: "pointing" }]),
+  words: ([along], { vertex, index }) =>
+    along === null ? HELD : `The marker lies at ${vertex(along)}, along the small number ${index(along)}.`,
+};
+/** A mark on the edge of a dart. */
+const ON_EDGE = { starts: (graph, facing) => [graph.opposite(facing)] };
+/** A marker at each end of the edge of a dart. */
+const AT_ENDS = {
+  thing: "the markers",
+  parts: (graph, [dart]) => ends(graph, dart).map((end) => ({ dart: end, drawn: "lying" })),
+  words: ([dart], { graph, vertex }) => `The markers lie at ${listed(ends(graph, dart).map(vertex))}.`,
+};
+
+/** Undirected markers that are carried. */
+function movable(count, areAlike = true) {
+  const numbers = [...Array(count).keys()];
+  const here = (graph, places, pose) => numbers.filter((at) => isAt(graph, places[at], pose));
+  const held = (places) => numbers.filter((at) => places[at] === null);
+  const look = (at) => (areAlike ? 0 : at);
+  const sorted = (places) => (areAlike ? places.sort((one, two) => (one ?? -1) - (two ?? -1)) : places);
+  return aid({
+    thing: count > 1 ? "the markers" : "the marker",
+    signs: "@ is the place of a marker, +marker that it is carried.",
+    placed: (graph, facing) => numbers.map(() => around(graph, facing)[0]),
+    sightings(graph, places, pose) {
+      const found = here(graph, places, pose);
+      return [areAlike ? lying(found.length) : these(found)];
+    },
+    starts: around,
+    parts(graph, places) {
+      const drawn = (at) => ["lying", ...LOOKS.slice(1)][look(at)];
+      return numbers.filter((at) => places[at] !== null).map((at) => ({ dart: places[at], drawn: drawn(at) }));
+    },
+    words(places, { vertex }) {
+      const lie = numbers.filter((at) => places[at] !== null).map((at) => vertex(places[at]) + DRAWN_AS[look(at)]);
+      const carried = held(places);
+      const some = areAlike && count > 1 ? (carried.length > 1 ? `${carried.length} markers` : "a marker") : "the marker";
+      const hand = areAlike ? some : `the ${these(carried)}`;
+      const where = lie.length > 1 ? `The markers lie at ${listed(lie)}.` : `${count > 1 ? "A" : "The"} marker lies at ${lie}.`;
+      return [...(lie.length ? [where] : []), ...(carried.length ? [`The robot carries ${hand}.`] : [])].join(" ");
+    },
+    text: (places, { vertex }) => places.map((place) => (place === null ? "+marker" : `@${vertex(place)}`)).join(""),
+    actions(graph, places, pose) {
+      const [found, carried] = [here(graph, places, pose), held(places)];
+      if (areAlike) return [...(found.length ? [PICK_UP] : []), ...(carried.length ? [DROP] : [])];
+      return [...found.map((at) => `${PICK_UP}-${at + 1}`), ...carried.map((at) => `${DROP}-${at + 1}`)];
+    },
+    act(graph, places, pose, action) {
+      const isDrop = action.startsWith(DROP);
+      const [first] = isDrop ? held(places) : here(graph, places, pose);
+      const at = areAlike ? first : Number(action.match(/\d+$/)[0]) - 1;
+      return sorted(replaced(places, at, isDrop ? around(graph, pose)[0] : null));
+    },
+  });
 }
 
-/** Where the marker is, for a drawing: a dart, and how it is drawn there. */
-function markerParts(marker, graph, placed) {
-  if (placed === null) return [];
-  const far = graph.opposite(placed);
-  const there = far === null ? [] : [far];
-  switch (marker) {
-    case "none":
-      return [];
-    case "directional":
-      return [{ dart: placed, drawn: "pointing" }];
-    case "undirected-edge":
-      return [{ dart: placed, drawn: "edge" }];
-    case "directed-edge":
-      return [{ dart: placed, drawn: "arrow" }];
-    case "two-identical":
-      return [placed, ...there].map((dart) => ({ dart, drawn: "lying" }));
-    case "two-distinct":
-      return [{ dart: placed, drawn: "lying" }, ...there.map((dart) => ({ dart, drawn: "second" }))];
-    default:
-      return [{ dart: placed, drawn: "lying" }];
-  }
+/**
+ * A string that the robot pays out, so long in edges; a page has none in a world in which it is not seen everywhere. Its
+ * places: the fixed end, the darts by which it leaves vertices, the free end.
+ */
+function string(length) {
+  const way = (places) => places.slice(1, -1);
+  const free = (places) => places.at(-1);
+  const behind = (graph, places) => (places.length > 2 ? graph.opposite(places.at(-2)) : null);
+  return aid({
+    thing: "the string",
+    signs: "~ are the darts by which the string leaves places, @ is the place of its free end, +string that the robot holds it.",
+    placed: (graph, facing) => [around(graph, facing)[0], null],
+    sightings(graph, places, pose) {
+      const door = (dart) => graph.door(pose, dart);
+      const darts = way(places).flatMap((dart) => ends(graph, dart));
+      const doors = [...new Set(darts.filter((dart) => isAt(graph, dart, pose)).map(door))].sort((one, two) => one - two);
+      const hand = free(places) === null ? behind(graph, places) : null;
+      const seen = [
+        ...(doors.length ? [`string through door${doors.length > 1 ? "s" : ""} ${listed(doors)}`] : []),
+        ...(hand === null ? [] : [`from the hand through door ${door(hand)}`]),
+        ...(isAt(graph, places[0], pose) ? ["fixed end"] : []),
+        ...(isAt(graph, free(places), pose) ? ["free end"] : []),
+      ];
+      return [seen.join(", ") || NOTHING];
+    },
+    starts: around,
+    parts(graph, places) {
+      const edges = way(places).map((dart) => ({ dart, drawn: "string" }));
+      const lies = free(places) === null ? [] : [{ dart: free(places), drawn: "lying" }];
+      return [{ dart: places[0], drawn: "third" }, ...lies, ...edges];
+    },
+    words(places, { graph, vertex }) {
+      const on = way(places).map((dart) => vertex(graph.opposite(dart)));
+      const runs = on.length ? `, runs to ${on.join(", then ")}` : "";
+      const end = free(places) === null ? "the robot holds the other end" : `its free end lies at ${vertex(free(places))}`;
+      return `The string is fixed at ${vertex(places[0])} (dotted)${runs}, and ${end}.`;
+    },
+    text(places, { dart, vertex }) {
+      const end = free(places) === null ? "+string" : `@${vertex(free(places))}`;
+      return way(places).map((by) => `~${dart(by)}`).join("") + end;
+    },
+    actions(graph, places, pose) {
+      if (free(places) === null) return [DROP];
+      return isAt(graph, free(places), pose) ? [PICK_UP] : [];
+    },
+    act: (graph, places, pose, action) => replaced(places, places.length - 1, action === DROP ? around(graph, pose)[0] : null),
+    leave(graph, places, by) {
+      if (free(places) !== null) return places;
+      if (behind(graph, places) === by) return [...places.slice(0, -2), null];
+      return places.length - 2 < length ? [...places.slice(0, -1), by, null] : null;
+    },
+  });
 }
+
+/** Other robots, each with the dart behind it. */
+function team(count, showsHeading) {
+  const along = (graph, from, to) => (showsHeading ? ` along door ${graph.door(from, to)}` : "");
+  return aid({
+    thing: count > 2 ? "the other robots" : "the other robot",
+    signs: "&2@ is where robot 2 is, and the small number of the door by which it has come in.",
+    placed: (graph, facing) => Array(count - 1).fill(facing),
+    sightings(graph, poses, pose) {
+      const place = (other, number) => {
+        if (isAt(graph, other, pose)) return `here${along(graph, pose, other)}`;
+        const second = number > 0 && isAt(graph, other, poses[0]);
+        return second ? `with robot 2${along(graph, poses[0], other)}` : `elsewhere at ${doorsText(graph.degree(other))}`;
+      };
+      return [poses.map((other, number) => `robot ${number + 2} ${place(other, number)}`).join(", ")];
+    },
+    starts: () => [],
+    parts: (graph, poses) =>
+      poses.map((dart, number) => ({ dart, drawn: showsHeading ? "robot" : "round robot", number: number + 2 })),
+    words(poses, { vertex, index }) {
+      const where = (dart) => `at ${vertex(dart)}, by the small number ${index(dart)}`;
+      return poses.map((dart, number) => `Robot ${number + 2} is ${where(dart)}.`).join(" ");
+    },
+    text: (poses, { dart }) => poses.map((pose, number) => `&${number + 2}@${dart(pose)}`).join(""),
+    actions(graph, poses) {
+      const doors = (dart) => [...Array(graph.degree(dart)).keys()];
+      return poses.flatMap((dart, number) => doors(dart).map((door) => `send-${number + 2}:${door}`));
+    },
+    act(graph, poses, pose, action) {
+      const { robot, door } = order(action);
+      return replaced(poses, robot - 2, graph.opposite(graph.turned(poses[robot - 2], door)));
+    },
+  });
+}
+
+/** The robot that an action sends, and the door, or null. */
+function order(action) {
+  const sent = action.match(/^send-(\d+):(\d+)$/)?.slice(1).map(Number);
+  return sent === undefined ? null : { robot: sent[0], door: sent[1] };
+}
+
+const AIDS = {
+  none: aid({
+    sightings: () => [NOTHING],
+    starts: (graph) => [...graph.far.keys()],
+    parts: () => [],
+    words: () => "There is no marker.",
+  }),
+  undirected: aid(LYING),
+  directional: aid(POINTING),
+  "undirected-edge": aid({
+    ...ON_EDGE,
+    sightings: (graph, [dart], pose) => [ends(graph, dart).includes(pose) ? PASSED : NOTHING],
+    parts: (graph, [dart]) => [{ dart, drawn: "edge" }],
+    words: ([dart], { edge }) => `The edge ${edge(dart)} is marked.`,
+  }),
+  "directed-edge": aid({
+    ...ON_EDGE,
+    sightings: (graph, [dart], pose) => [pose === dart ? AGAINST : pose === graph.opposite(dart) ? ALONG : NOTHING],
+    parts: (graph, [dart]) => [{ dart, drawn: "arrow" }],
+    words: ([dart], { edge, vertex }) => `The edge ${edge(dart)} is marked with an arrow away from ${vertex(dart)}.`,
+  }),
+  "two-identical": aid({
+    ...AT_ENDS,
+    sightings(graph, [dart], pose) {
+      const known = ends(graph, dart).filter((end) => isAt(graph, end, pose)).length;
+      return (graph.opposite(dart) === null ? [known, known + 1] : [known]).map(lying);
+    },
+    starts: (graph, dart) => ends(graph, dart).flatMap((end) => around(graph, end)).sort((one, two) => one - two),
+  }),
+  "two-distinct": aid({
+    ...AT_ENDS,
+    sightings(graph, [dart], pose) {
+      const known = [dart, graph.opposite(dart)].flatMap((end, at) => (isAt(graph, end, pose) ? [at] : []));
+      return (graph.opposite(dart) === null ? [known, [...known, 1]] : [known]).map(these);
+    },
+    starts: around,
+    parts: (graph, [dart]) => ends(graph, dart).map((end, at) => ({ dart: end, drawn: ["lying", "second"][at] })),
+    words: ([dart], { graph, vertex }) =>
+      `The markers lie at ${listed(ends(graph, dart).map((end, at) => vertex(end) + DRAWN_AS[at]))}.`,
+  }),
+  [MOVABLE]: movable(1),
+  "movable-2": movable(2),
+  "movable-3": movable(3),
+  "movable-4": movable(4),
+  "movable-2-distinct": movable(2, false),
+  "movable-3-distinct": movable(3, false),
+  "movable-4-distinct": movable(4, false),
+  "movable-directional": aid({
+    ...POINTING,
+    signs: "@ is where the marker lies and points, +marker that it is carried.",
+    text: ([along], { dart }) => (along === null ? "+marker" : `@${dart(along)}`),
+    actions: (graph, [along], pose) => (along === null ? [DROP] : isAt(graph, along, pose) ? [PICK_UP] : []),
+    act: (graph, places, pose, action) => [action === DROP ? pose : null],
+  }),
+  "string-1": string(1),
+  "string-2": string(2),
+  "string-3": string(3),
+  "team-2": team(2, true),
+  "team-2-round": team(2, false),
+  "team-3": team(3, true),
+  "team-3-round": team(3, false),
+};
 
 /**
  * What a percept shows about a place or an edge: a key and a value. In one world, percepts with the same key have the
@@ -87,40 +305,63 @@ const doorsText = (degree) => (degree === 1 ? "1 door" : `${degree} doors`);
 
 const isDoor = (action) => /^\d+$/.test(action);
 
-/** A robot in a world with a marker. */
+/** An action in words. */
+function called(action) {
+  if (isDoor(action)) return `door ${action}`;
+  const sent = order(action);
+  if (sent !== null) return `send robot ${sent.robot} through door ${sent.door}`;
+  const [, verb, number] = action.match(/^(pick-up|drop)-?(\d*)$/);
+  return verb.replace("-", " ") + (number && ` the ${LOOKS[number - 1]} marker`);
+}
+
+/** A robot in a world with an aid. */
 class Robot {
-  constructor(marker, graph, pose, placed = pose) {
-    Object.assign(this, { marker, graph, pose, placed });
+  constructor(aid, graph, pose, placed) {
+    Object.assign(this, { aid, graph, pose, placed });
+  }
+
+  /** The robot at a start, with the aid of this name. */
+  static start(name, graph, pose, facing = pose) {
+    return new Robot(AIDS[name], graph, pose, AIDS[name].placed(graph, facing));
   }
 
   /** The robot after one of the actions. */
   after(action) {
-    const robot = new Robot(this.marker, this.graph, this.pose, this.placed);
+    const robot = new Robot(this.aid, this.graph, this.pose, this.placed);
     robot.act(action);
     return robot;
   }
 
   get carries() {
-    return this.placed === null;
+    return this.placed.includes(null);
+  }
+
+  get parts() {
+    return this.aid.parts(this.graph, this.placed);
   }
 
   percept() {
-    const [sighting] = sightings(this.marker, this.graph, this.placed, this.pose);
+    const [sighting] = this.aid.sightings(this.graph, this.placed, this.pose);
     return { degree: this.graph.degree(this.pose), sighting };
   }
 
-  /** What the robot can do: the numbers of doors as texts, and picking up or dropping the marker. */
+  /** What the robot can do: the numbers of doors as texts, and the actions of the aid. */
   actions() {
-    const doors = [...Array(this.graph.degree(this.pose)).keys()].map(String);
-    if (this.marker !== MOVABLE) return doors;
-    if (this.carries) return [...doors, DROP];
-    return this.percept().sighting === NOTHING ? doors : [...doors, PICK_UP];
+    const { aid, graph, placed, pose } = this;
+    const canLeave = (door) => aid.leave(graph, placed, graph.turned(pose, door)) !== null;
+    const doors = [...Array(graph.degree(pose)).keys()].filter(canLeave).map(String);
+    return [...doors, ...aid.actions(graph, placed, pose)];
   }
 
   /** Does one of the actions. */
   act(action) {
-    if (action === PICK_UP) this.placed = null;
-    else if (action === DROP) this.placed = this.pose;
-    else this.pose = this.graph.opposite(this.graph.turned(this.pose, Number(action)));
+    const { aid, graph, placed, pose } = this;
+    if (isDoor(action)) {
+      const by = graph.turned(pose, Number(action));
+      this.placed = aid.leave(graph, placed, by);
+      this.pose = graph.opposite(by);
+    } else {
+      this.placed = aid.act(graph, placed, pose, action);
+    }
   }
 }

@@ -15,12 +15,19 @@ function say(text) {
   find(".status").textContent = text;
 }
 
-/** A button for an action: the number of a door, as a text, or a word. */
-function actionButton(action, onClick) {
-  const button = Object.assign(document.createElement("button"), { type: "button", textContent: action });
-  if (action === "0") button.textContent = "0 back";
-  if (/^\d+$/.test(action)) button.setAttribute("aria-label", action === "0" ? "door 0, back" : `door ${action}`);
+function textButton(text, onClick) {
+  const button = Object.assign(document.createElement("button"), { type: "button", textContent: text });
   button.addEventListener("click", onClick);
+  return button;
+}
+
+/** A button for an action: the number of a door, or what it does. */
+function actionButton(action, onClick) {
+  const door = isDoor(action) ? action : order(action)?.door;
+  const isBack = Number(door) === 0;
+  const text = door === undefined ? called(action) : isBack ? "0 back" : door;
+  const button = textButton(text, onClick);
+  if (door !== undefined) button.setAttribute("aria-label", `${called(action)}${isBack ? ", back" : ""}`);
   return button;
 }
 

@@ -10,6 +10,10 @@ const beyond = (from, angle, length) => ({
 /** The signs of a marker on an edge, of size 1, in the direction of x. */
 const ARROW = "M1 0L-0.8 0.7L-0.8 -0.7Z";
 const BAR = "M-0.3 -1H0.3V1H-0.3Z";
+/** Another robot that shows where its front is. */
+const FRONT = "M1.9 0L-1.1 1.4L-1.1 -1.4Z";
+/** The parts of an aid that are rings. */
+const RINGS = ["lying", "second", "third", "fourth"];
 
 class Panel {
   /** `onDoor` is called with the number of a door that is clicked in the picture. */
@@ -78,8 +82,8 @@ class Panel {
     this.robot.classList.toggle("carrying", state.robot.carries);
     const disc = this.discs.get(state.vertex);
     this.place(disc, direction(this.end(state.dart), disc));
-    this.drawMarker();
-    this.drawDoors();
+    const reach = this.drawDoors();
+    this.drawAid(reach);
   }
 
   place(at, angle) {
@@ -118,33 +122,66 @@ class Panel {
     step(begun);
   }
 
-  /** The marker: rings around vertices, an arrow at a door, or a mark in the middle of an edge. */
-  drawMarker() {
-    const signs = this.state.parts.map(({ dart, drawn: kind }, nth) => {
-      const disc = this.discs.get(this.state.robot.graph.vertex(dart));
-      const size = Math.max(this.knob + 4, 7 * this.pixel);
-      if (kind === "lying" || kind === "second") {
-        const radius = disc.r + Math.max(this.knob + 4, 3 * this.pixel) + 4 * nth * this.pixel;
-        return drawn("circle", { class: `mark-disc ${kind}`, cx: disc.x, cy: disc.y, r: radius });
-      }
-      const { path, backward } = this.ways.get(dart);
-      const length = path.getTotalLength();
-      const at = (away) => path.getPointAtLength(backward ? away : length - away);
-      const [place, before] = kind === "pointing" ? [1.7 * size, size] : [length / 2, length / 2 - 1];
-      const turn = direction(at(before), at(place));
-      return this.sign(at(place), turn, size, kind === "edge" ? BAR : ARROW);
+  /**
+   * The marking aid: rings around vertices, an arrow at a door, a mark in the middle of an edge, a string along edges, or
+   * robots that have come in by an edge. The numbers of doors reach so far from the robot's disc.
+   */
+  drawAid(reach) {
+    const { parts } = this.state.robot;
+    const size = Math.max(this.knob + 4, 7 * this.pixel);
+    const before = (part, isAlike) => parts.slice(0, parts.indexOf(part)).filter(isAlike).length;
+    const rings = parts.filter(({ drawn: kind }) => RINGS.includes(kind)).map((part) => {
+      const disc = this.discOf(part.dart);
+      const around = before(part, (other) => RINGS.includes(other.drawn) && this.discOf(other.dart) === disc);
+      const radius = disc.r + Math.max(this.knob + 4, 3 * this.pixel) + 4 * around * this.pixel;
+      return drawn("circle", { class: `mark-disc ${part.drawn}`, cx: disc.x, cy: disc.y, r: radius });
     });
-    this.halos.replaceChildren(...signs.filter(({ tagName }) => tagName === "circle"));
-    this.marks.replaceChildren(...signs.filter(({ tagName }) => tagName !== "circle"));
+    const strings = parts.filter(({ drawn: kind }) => kind === "string").map((part) => {
+      const { path } = this.ways.get(part.dart);
+      const again = before(part, (other) => other.drawn === "string" && this.ways.get(other.dart).path === path);
+      // Thicker where it runs once more.
+      return drawn("path", { class: "string", d: path.getAttribute("d"), "stroke-width": 4 + 4 * again });
+    });
+    const marks = parts.filter(({ drawn: kind }) => kind !== "string" && !RINGS.includes(kind)).map((part) => {
+      const { dart, drawn: kind } = part;
+      if (part.number !== undefined) return this.other(part, before(part, (other) => other.dart === dart), reach);
+      const half = this.ways.get(dart).path.getTotalLength() / 2;
+      const [place, from] = kind === "pointing" ? [1.7 * size, size] : [half, half - 1];
+      return this.sign(dart, place, from, size, drawn("path", { class: "mark", d: kind === "edge" ? BAR : ARROW }));
+    });
+    this.halos.replaceChildren(...rings, ...strings);
+    this.marks.replaceChildren(...marks);
   }
 
-  /** A sign on an edge. */
-  sign({ x, y }, turn, size, shape) {
-    const place = `translate(${x} ${y}) rotate(${(turn * 180) / Math.PI}) scale(${size})`;
-    return drawn("path", { class: "mark", d: shape, transform: place });
+  discOf(dart) {
+    return this.discs.get(this.state.robot.graph.vertex(dart));
   }
 
-  /** The doors of the vertex with the robot's own numbers, large enough for a finger. */
+  /** Puts a sign on the edge of a dart, so far from its disc, in the direction from another such place. */
+  sign(dart, place, from, size, shape) {
+    const { path, backward } = this.ways.get(dart);
+    const at = (away) => path.getPointAtLength(backward ? away : path.getTotalLength() - away);
+    const { x, y } = at(place);
+    const turn = (direction(at(from), at(place)) * 180) / Math.PI;
+    shape.setAttribute("transform", `translate(${x} ${y}) rotate(${turn}) scale(${size})`);
+    return shape;
+  }
+
+  /** Another robot of the team, on the edge by which it has come in, beyond the explorer's own door if that is here. */
+  other({ dart, drawn: kind, number }, before, reach) {
+    const size = 10 * this.pixel;
+    const isHere = this.state.robot.graph.vertex(dart) === this.state.vertex;
+    const length = this.ways.get(dart).path.getTotalLength();
+    const away = (isHere ? reach : this.knob) + 1.9 * size + 3.2 * size * before;
+    const place = Math.min(away, length - 1.2 * size);
+    const shape = kind === "robot" ? drawn("path", { d: FRONT }) : drawn("circle", { r: 1 });
+    const group = this.sign(dart, place, place + 1, size, drawn("g", { class: "other-robot" }, shape));
+    const [, turn] = group.getAttribute("transform").match(/rotate\((.*?)\)/);
+    group.append(drawn("text", { y: 0.42, "font-size": 1.2, transform: `rotate(${-turn})` }, String(number)));
+    return group;
+  }
+
+  /** The doors of the vertex with the robot's own numbers, large enough for a finger. Returns how far they reach. */
   drawDoors() {
     const { pixel, state } = this;
     const disc = this.discs.get(state.vertex);
@@ -172,7 +209,7 @@ class Panel {
       const door = drawn("g", { "data-action": action }, circle("badge", at, radius), number);
       door.classList.toggle("alone", !this.shared(action));
       // Its number may cover the marker that points along it.
-      door.classList.toggle("marked", state.parts.some((part) => part.dart === dart && part.drawn === "pointing"));
+      door.classList.toggle("marked", state.robot.parts.some((part) => part.dart === dart && part.drawn === "pointing"));
       group.append(door);
     }
     // A finger covers several doors: choose the nearest.
@@ -187,6 +224,7 @@ class Panel {
     const hidden = new Set(doors.flatMap(({ dart }) => this.numbers.get(dart) ?? []));
     for (const sign of this.svg.querySelectorAll(".overruled")) sign.classList.remove("overruled");
     for (const sign of hidden) sign.classList.add("overruled");
+    return away - disc.r + radius;
   }
 }
 

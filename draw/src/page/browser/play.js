@@ -30,7 +30,6 @@ const walk = new Percepts(find(".percepts"));
 const movesText = (count) => (count === 1 ? "1 move" : `${count} moves`);
 const sizeText = (graph) => `${graph.vertexCount === 1 ? "1 place" : `${graph.vertexCount} places`}`;
 const movesUpTo = (time) => actions.slice(0, time).filter(isDoor).length;
-const actionText = (action) => (isDoor(action) ? `door ${action}` : action);
 
 /** The vertices of the map, by their names; one that the robot has just reached has none. */
 const nameOf = (vertex) => names.get(map.numbers[vertex]) ?? "?";
@@ -75,7 +74,7 @@ function act(action) {
   actions.push(action);
   fold();
   show();
-  const at = `Move ${movesUpTo(actions.length)}, ${actionText(action)}: ${perceptText(percepts.at(-1))}.`;
+  const at = `Move ${movesUpTo(actions.length)}, ${called(action)}: ${perceptText(percepts.at(-1))}.`;
   say(`${at} ${contradiction === null ? placeText() : wrongClaim()}`);
 }
 
@@ -84,7 +83,7 @@ function placeText() {
   const isKnown = names.has(map.numbers[current()]);
   const text = isKnown ? `On your map, this is ${nameOf(current())}.` : "On your map, this is a new place.";
   const { sighting } = percepts.at(-1);
-  const expected = sightings(marker, map.graph, map.placed(actions), pose());
+  const expected = AIDS[marker].sightings(map.graph, map.placed(actions), pose());
   if (sighting === NOTHING || expected.includes(sighting)) return text;
   const prompt = sighting.startsWith(PASSED)
     ? "You passed the mark, and on your map the mark is elsewhere"
@@ -152,7 +151,7 @@ function nextWorld() {
 
 function begin(chosen) {
   game = chosen;
-  robot = new Robot(marker, game.graph, game.start);
+  robot = Robot.start(marker, game.graph, game.start);
   [percepts, actions, claims] = [[robot.percept()], [], []];
   names = new Map([[0, "v0"]]);
   finished = false;
@@ -253,7 +252,7 @@ function showOther(other) {
   const graph = other?.world ?? null;
   find(".other").hidden = graph === null;
   if (graph === null) return;
-  const ghost = new Robot(marker, graph, 0);
+  const ghost = Robot.start(marker, graph, 0);
   for (const action of actions) ghost.act(action);
   const numbers = [...graph.first.keys()];
   write(".other .kind", other.isSmallest ? "The smallest other world" : "Another world");
@@ -264,7 +263,7 @@ function showOther(other) {
     numbers,
     names: numbers.map((number) => `w${number}`),
     pose: ghost.pose,
-    parts: markerParts(marker, graph, ghost.placed),
+    parts: ghost.parts,
   });
 }
 
@@ -295,7 +294,7 @@ function show() {
   write(".play .percept", perceptText(now) + (robot.carries ? "; you carry the marker" : ""));
   write(".moves", movesText(movesUpTo(actions.length)));
   document.body.classList.toggle("begun", actions.length > 0);
-  const parts = contradiction === null ? markerParts(marker, map.graph, map.placed(actions)) : [];
+  const parts = contradiction === null ? AIDS[marker].parts(map.graph, map.placed(actions)) : [];
   const { graph, numbers } = map;
   drawing.show({ graph, numbers, names: numbers.map((_, vertex) => nameOf(vertex)), pose: contradiction === null ? pose() : null, parts });
   find(".map").classList.toggle("differs", contradiction !== null);
@@ -381,7 +380,7 @@ function showDarts() {
 function showClaims() {
   find(".claims").hidden = claims.length === 0;
   const items = claims.map((claimed) => {
-    const button = actionButton("Withdraw", () => withdraw(claimed));
+    const button = textButton("Withdraw", () => withdraw(claimed));
     button.setAttribute("aria-label", `Withdraw: ${claimText(claimed)}`);
     button.setAttribute("aria-disabled", String(finished));
     const item = document.createElement("li");

@@ -154,11 +154,11 @@ class FoldedMap {
     }
   }
 
-  /** The dart that places the marker after all actions, or null. */
+  /** The place of the marker after all actions. */
   placed(actions) {
     const moved = actions.findLastIndex((action) => action === PICK_UP || action === DROP);
-    if (moved < 0) return this.poses[0];
-    return actions[moved] === DROP ? this.poses[moved + 1] : null;
+    if (moved < 0) return [this.poses[0]];
+    return [actions[moved] === DROP ? this.poses[moved + 1] : null];
   }
 }
 

@@ -58,7 +58,7 @@ class WorldSearch {
     this.sensed = [];
     if (!this.fitsSize(this.percepts[0].degree)) return null;
     const pose = this.add(0);
-    return (this.fits(0, pose, pose) ? this.replay(0, pose, pose) : null) ?? this.found;
+    return (this.fits(0, pose, [pose]) ? this.replay(0, pose, [pose]) : null) ?? this.found;
   }
 
   /** Adds the place where the robot is after so many actions, and returns its first dart. */
@@ -78,7 +78,7 @@ class WorldSearch {
   fits(time, pose, placed) {
     const { degree, sighting } = this.percepts[time];
     const { graph, marker } = this;
-    const fits = graph.degree(pose) === degree && sightings(marker, graph, placed, pose).includes(sighting);
+    const fits = graph.degree(pose) === degree && AIDS[marker].sightings(graph, placed, pose).includes(sighting);
     return fits && (!["two-identical", "two-distinct"].includes(marker) || this.fitsTwo(placed, pose, sighting));
   }
 
@@ -86,10 +86,10 @@ class WorldSearch {
   fitsTwo(placed, pose, sighting) {
     const { graph, marker, sensed } = this;
     if (sensed[graph.vertex(pose)] !== sighting) return false;
-    const others = sensed.filter((text, vertex) => text !== NOTHING && vertex !== graph.vertex(placed));
+    const others = sensed.filter((text, vertex) => text !== NOTHING && vertex !== graph.vertex(placed[0]));
     if (others.length > 1) return false;
-    if (graph.opposite(placed) === null) return true;
-    return graph.first.every((dart, vertex) => sightings(marker, graph, placed, dart).includes(sensed[vertex]));
+    if (graph.opposite(placed[0]) === null) return true;
+    return graph.first.every((dart, vertex) => AIDS[marker].sightings(graph, placed, dart).includes(sensed[vertex]));
   }
 
   /** Goes on with the walk after so many actions. */
@@ -103,7 +103,7 @@ class WorldSearch {
         if (far === null) return this.arrive(time + 1, out, placed);
         pose = far;
       } else {
-        placed = action === DROP ? pose : null;
+        placed = [action === DROP ? pose : null];
       }
       time += 1;
       if (!this.fits(time, pose, placed)) return null;
@@ -195,7 +195,7 @@ class WorldSearch {
 
   /** Whether a robot in a complete world perceives what it perceived. */
   explains(world) {
-    const robot = new Robot(this.marker, world, 0);
+    const robot = Robot.start(this.marker, world, 0);
     return this.percepts.every(({ degree, sighting }, time) => {
       if (time > 0) robot.act(this.actions[time - 1]);
       const now = robot.percept();

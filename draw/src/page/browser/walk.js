@@ -24,7 +24,6 @@ const here = () => steps.at(-1).states;
 const pair = (states) => states.map((state) => state.text);
 const differ = ([a, b]) => a.percept !== b.percept;
 const shared = (action) => here().every(({ robot }) => robot.actions().includes(action));
-const called = (action) => (isDoor(action) ? `door ${action}` : action);
 const startText = ({ robot, side }) => `${side.vertices[robot.graph.vertex(robot.pose)]}:${side.facings[robot.pose]}`;
 
 /** Compares the worlds with a marker, and begins a walk. */
@@ -77,7 +76,7 @@ function show(duration = 0) {
     panel.show(states[side], shared, still.matches ? 0 : duration);
     worlds[side].classList.toggle("differs", differ(states));
     worlds[side].querySelector(".state").textContent = states[side].text;
-    worlds[side].querySelector(".marker-place").textContent = markerText(states[side]);
+    worlds[side].querySelector(".marker-place").textContent = states[side].words;
     worlds[side].querySelector(".percept").textContent = states[side].percept;
   }
   relation?.show(pair(states));
@@ -96,8 +95,10 @@ function act(action, { travel } = BY_HAND) {
   const next = here().map((state) => state.actions.get(action));
   const able = next.filter(Boolean).length;
   if (able < 2) {
-    const none = isDoor(action) ? `There is no door ${action} here.` : `Neither can ${action} here.`;
-    const way = isDoor(action) ? `has a door ${action}` : `can ${action}`;
+    const isShort = here().every(({ robot }) => Number(action) < robot.graph.degree(robot.pose));
+    const door = isShort ? `The string is too short for door ${action}.` : `There is no door ${action} here.`;
+    const none = isDoor(action) ? door : `Neither can ${called(action)} here.`;
+    const way = isDoor(action) ? `has a door ${action}` : `can ${called(action)}`;
     say(able ? `Only ${next[0] ? "A" : "B"} ${way} here: they cannot both go on by it.` : none);
     return false;
   }
@@ -118,7 +119,8 @@ function restart() {
 function undo() {
   stop();
   if (steps.length === 1) return;
-  relation?.visit(pair(steps.pop().states), -1);
+  const { states } = steps.pop();
+  relation?.visit(pair(states), -1);
   percepts.removeLast();
   show();
 }
@@ -176,7 +178,10 @@ function distinguish() {
 
 // Buttons and keys.
 
-/** An action that only one of the robots can take is disabled. */
+/**
+ * An action that only one of the robots can take is disabled. The doors through which another robot is sent are a row of
+ * their own.
+ */
 function showActions() {
   const row = find(".doors");
   const focused = document.activeElement.dataset?.action;
@@ -189,15 +194,28 @@ function showActions() {
     button.setAttribute("aria-disabled", String(!shared(action)));
     return button;
   });
-  row.replaceChildren(...buttons);
+  const rows = new Map();
+  for (const button of buttons) {
+    const robot = order(button.dataset.action)?.robot;
+    if (!rows.has(robot)) rows.set(robot, robot === undefined ? [] : [`Send robot ${robot}:`]);
+    rows.get(robot).push(button);
+  }
+  const groups = [...rows].sort(([one], [two]) => (one ?? 0) - (two ?? 0)).map(([, content]) => {
+    const group = Object.assign(document.createElement("div"), { className: "row" });
+    group.append(...content);
+    return group;
+  });
+  row.replaceChildren(...groups);
   if (focused !== undefined) (buttons.find(({ dataset }) => dataset.action === focused) ?? buttons[0]).focus();
   find("#undo").setAttribute("aria-disabled", String(steps.length === 1));
 }
 
 /** The keys of this marker: for each its names, how it is written, what it does. */
 function keys() {
+  const { aid, graph, pose, placed } = initial[0].robot;
+  const hasKeys = aid.actions(graph, placed, pose).some((action) => [DROP, PICK_UP].includes(action));
   return [
-    ...(marker === MOVABLE ? [[["d"], "D", DROP, () => byHand(DROP)], [["p"], "P", PICK_UP, () => byHand(PICK_UP)]] : []),
+    ...(hasKeys ? [[["d"], "D", called(DROP), () => byHand(DROP)], [["p"], "P", called(PICK_UP), () => byHand(PICK_UP)]] : []),
     ...(walk?.length ? [[["w"], "W", "the walk that distinguishes them", distinguish]] : []),
     [[" "], "Space", "random walk", randomWalk],
     [["Backspace", "u"], "Backspace", "undo", undo],
@@ -220,15 +238,15 @@ find("#distinguish").addEventListener("click", distinguish);
 
 /** The legend of the keys and the signs. */
 function showKeys() {
+  const { aid } = initial[0].robot;
   const key = (name) => Object.assign(document.createElement("kbd"), { textContent: name });
   const hints = keys().flatMap(([, name, meaning]) => [" · ", key(name), ` ${meaning}`]);
   find(".keys").replaceChildren("Keys: ", key("0"), " to ", key("9"), " doors", ...hints);
   const doors =
     "Blue numbers are the doors as each robot counts them, 0 is the way back; percepts have these numbers. " +
     "Small numbers count clockwise from each vertex's first.";
-  const carried = marker === MOVABLE ? " @ is the place of the marker, +marker that it is carried." : "";
-  const states = `${initial[0].text} is a robot that has come in by the door of that small number.${carried}`;
-  find(".meaning").textContent = `${doors} ${states} Red is the marker.`;
+  const states = `${initial[0].text}: the robot has come in by the door of that small number.`;
+  find(".meaning").textContent = `${doors} ${states} ${aid.signs} Red: ${aid.thing}.`;
 }
 
 {

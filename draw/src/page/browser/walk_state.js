@@ -24,38 +24,30 @@ class WalkState {
     return perceptText(this.robot.percept());
   }
 
-  get parts() {
-    return markerParts(this.robot.marker, this.robot.graph, this.robot.placed);
-  }
-
   /** The state after each action. */
   get actions() {
     return new Map(this.robot.actions().map((action) => [action, new WalkState(this.side, this.robot.after(action))]));
   }
 
-  /** The pose as vertex:door, counted from the vertex's first; and where a movable marker is. */
-  get text() {
-    const { marker, graph, pose, placed } = this.robot;
-    const { vertices } = this.side;
-    const at = `${vertices[this.vertex]}:${graph.index(pose)}`;
-    if (marker !== MOVABLE) return at;
-    return placed === null ? `${at}+marker` : `${at}@${vertices[graph.vertex(placed)]}`;
+  /** How places are called in the picture, whose numbers of doors are not those of the robot. */
+  get names() {
+    const { graph } = this.robot;
+    const { vertices, edges } = this.side;
+    const index = (dart) => graph.index(dart);
+    const vertex = (dart) => vertices[graph.vertex(dart)];
+    const edge = (dart) => edges?.[dart] ?? `${vertex(dart)} to ${vertex(graph.opposite(dart))}`;
+    return { graph, index, vertex, edge, dart: (dart) => `${vertex(dart)}:${index(dart)}` };
   }
-}
 
-/** Where the marker is in the picture. Doors have the numbers of the picture, which are not those of the robot. */
-function markerText({ parts, robot, side }) {
-  const name = (dart) => side.vertices[robot.graph.vertex(dart)];
-  const edge = (dart) => side.edges?.[dart] ?? `${name(dart)} to ${name(robot.graph.opposite(dart))}`;
-  if (robot.carries) return "The robot carries the marker.";
-  const texts = {
-    pointing: (dart) => `The marker lies at ${name(dart)}, along the small number ${robot.graph.index(dart)}.`,
-    edge: (dart) => `The edge ${edge(dart)} is marked.`,
-    arrow: (dart) => `The edge ${edge(dart)} is marked with an arrow away from ${name(dart)}.`,
-  };
-  const [first] = parts;
-  if (first === undefined) return "There is no marker.";
-  if (texts[first.drawn]) return texts[first.drawn](first.dart);
-  const places = parts.map(({ dart, drawn }) => name(dart) + (drawn === "second" ? " (dashed)" : ""));
-  return parts.length === 1 ? `The marker lies at ${places[0]}.` : `The markers lie at ${places.join(" and ")}.`;
+  /** The pose as vertex:door, counted from the vertex's first; and the state of an aid that moves. */
+  get text() {
+    const { aid, pose, placed } = this.robot;
+    return this.names.dart(pose) + aid.text(placed, this.names);
+  }
+
+  /** Where the aid is, in words. */
+  get words() {
+    const { aid, placed } = this.robot;
+    return aid.words(placed, this.names);
+  }
 }

@@ -1,7 +1,11 @@
 //! The data of the page, as JSON for its script.
 
 use serde_json::{Value, json};
-use toposlam_model::{aid::FEW_STATES, embedded_graph::Dart, format::named_world::NamedWorld};
+use toposlam_model::{
+    aid::{AIDS, Aid, AidKind},
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+};
 
 use super::WalkPage;
 use crate::page::{
@@ -11,7 +15,8 @@ use crate::page::{
 
 /// The data as JSON that can stand inside a `script` element.
 pub(super) fn json(page: &WalkPage) -> String {
-    let aids = FEW_STATES.iter();
+    let is_seen = |aid: &AidKind| page.worlds.iter().all(|it| aid.is_seen_everywhere(&it.graph));
+    let aids = AIDS.into_iter().filter(is_seen);
     let markers: Vec<_> =
         aids.map(|aid| json!({ "name": aid.name(), "about": aid.about() })).collect();
     let sides = [0, 1].map(|at| side(page.worlds[at], page.facings[at]));

@@ -68,7 +68,7 @@ pub(super) fn picture(world: &NamedWorld) -> String {
 #[cfg(test)]
 mod tests {
     use serde_json::json;
-    use toposlam_model::{embedded_graph::EmbeddedGraph, marker::Undirected};
+    use toposlam_model::{aid::AIDS, embedded_graph::EmbeddedGraph, marker::Undirected};
 
     use super::*;
     use crate::page::template::checks::{NASTY, assert_escaped, data_of};
@@ -101,7 +101,7 @@ mod tests {
         let worlds = [chain("one", 1), chain("two", 2)];
         let data = data_of(&document(Undirected.into(), worlds.each_ref()));
         assert_eq!(data["marker"], "undirected");
-        assert_eq!(data["markers"].as_array().unwrap().len(), 8);
+        assert_eq!(data["markers"].as_array().unwrap().len(), AIDS.len());
         let [one, two] = [&data["sides"][0], &data["sides"][1]];
         assert_eq!(one["world"], json!([[[1, 0]], [[0, 0]]]));
         assert_eq!(one["facing"], json!([0, 0]));
