@@ -8,15 +8,17 @@ mod relocation;
 
 use toposlam_logs::record::{Arrival, EventKind, Frame, FrameSensor, RunObserver};
 use toposlam_model::{
+    aid::{AidAction, AidKind},
     driving::{
         algorithm2::{
             Command, FrameKind, JunctionState, Lost, LostReason, PathExecution, PathState, Step,
         },
         scene::Scene,
+        visit::SoughtMarker,
     },
     mapping::{ArrivalMeasurement, MapWalk, MappedWorld, MappingError},
-    percept::{Door, Percept},
-    world::World,
+    percept::{Door, Percept, Sighting},
+    world::{AidHandler, World},
 };
 
 use crate::{
@@ -58,6 +60,7 @@ pub struct RobotExplorer<R, S, O = ()> {
     door: Option<Door>,
     /// Whether it returns at an obstacle that it cannot pass, as from a dead end, and does not give up.
     returns_at_obstacles: bool,
+    sought: SoughtMarker,
     /// Where an obstacle stopped it, since it last stood at a junction.
     stall: Option<Stall>,
     /// Whether the robot may stand anywhere at its start, and not only at an L.
@@ -79,6 +82,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             log: EventLog::new(observer),
             place: None,
             returns_at_obstacles: false,
+            sought: SoughtMarker::Pointing,
             stall: None,
             begins_anywhere: false,
             allowance: Allowance::default(),
@@ -124,6 +128,10 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
         self.returns_at_obstacles |= settings.method.recovers();
         self.begins_anywhere = !settings.earlier.is_empty();
+        self.sought = match settings.method.algorithm().aid() {
+            AidKind::Markers(_) => SoughtMarker::Lying,
+            _ => SoughtMarker::Pointing,
+        };
         self.map_building(settings)
     }
 
@@ -132,7 +140,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     /// Drives a path to its end.
-    fn drive(&mut self, mut path: PathExecution) -> Result<JunctionState, ExplorerError> {
+    fn drive(&mut self, path: PathExecution) -> Result<JunctionState, ExplorerError> {
+        let mut path = path.with_sought(self.sought);
         let mut junction = None;
         loop {
             let (moves, door) = (self.last_move, self.door);
@@ -335,6 +344,30 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
                 return Err(error);
             }
         }
+        Ok(())
+    }
+
+    fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = ExplorerError>> {
+        Some(self)
+    }
+}
+
+impl<R: Robot, S: FrameSensor, O: RunObserver> AidHandler for RobotExplorer<R, S, O> {
+    type Error = ExplorerError;
+
+    /// Picks the marker up or drops it, where the robot stands. Its body hides the floor there; but the gripper feels whether
+    /// it holds the marker, so the robot then knows whether one lies here.
+    fn handle(&mut self, action: AidAction) -> Result<(), ExplorerError> {
+        let state = self.junction_state()?;
+        self.robot.handle(action).map_err(|error| self.robot_error(error))?;
+        let sighting = match action {
+            AidAction::Drop => Sighting::Lying(1),
+            _ => Sighting::Nothing,
+        };
+        let percept = Percept { sighting, ..state.percept };
+        self.place = Some(Standpoint::Junction(JunctionState { percept, ..state }));
+        let number = u32::try_from(self.last_move).ok();
+        self.emit(EventKind::Action { number, action });
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use std::iter::Cloned;
 
 use toposlam_logs::record::{Event, EventKind, Frame, RunObserver};
-use toposlam_model::driving::algorithm2::Command;
+use toposlam_model::{aid::AidAction, driving::algorithm2::Command};
 
 use crate::robot::{Robot, RobotError, TimedOdometry};
 
@@ -58,6 +58,10 @@ impl<F: Iterator<Item = Frame>> Robot for RecordedRobot<F> {
     }
 
     fn forward(&mut self, _: f64) -> Result<(), RobotError> {
+        Ok(())
+    }
+
+    fn handle(&mut self, _: AidAction) -> Result<(), RobotError> {
         Ok(())
     }
 

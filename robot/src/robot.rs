@@ -2,7 +2,10 @@
 
 use thiserror::Error;
 use toposlam_logs::record::Frame;
-use toposlam_model::driving::{odometry::Odometry, pose::Pose};
+use toposlam_model::{
+    aid::AidAction,
+    driving::{odometry::Odometry, pose::Pose},
+};
 use toposlam_vision::laser::scan::ScanError;
 
 /// A robot with a camera or a laser scanner. An action may fail, be late, or be inexact; odometry reports its result.
@@ -18,6 +21,12 @@ pub trait Robot {
 
     /// Goes straight ahead, by a distance in metres.
     fn forward(&mut self, distance: f64) -> Result<(), RobotError>;
+
+    /// Does something with its marking aid, where it stands. A gripper feels whether it holds the marker, so this is an
+    /// error if the action did not succeed.
+    fn handle(&mut self, action: AidAction) -> Result<(), RobotError> {
+        Err(RobotError::CannotHandle { action })
+    }
 
     /// Where the robot is by its wheels, and when.
     fn odometry(&self) -> TimedOdometry;
@@ -55,6 +64,14 @@ pub struct TimedOdometry {
 pub enum RobotError {
     #[error("the camera gives no image")]
     NoImage,
+    #[error("this robot cannot do `{action}`")]
+    CannotHandle { action: AidAction },
+    #[error("the gripper finds no marker")]
+    NothingGripped,
+    #[error("the robot stands at no junction, and keeps its marker")]
+    NotAtJunction,
+    #[error("the gripper is {}", if *.holds { "full" } else { "empty" })]
+    Gripper { holds: bool },
     #[error("the log has no more images")]
     EndOfLog,
     #[error("no ROS master at {master}: {cause}")]

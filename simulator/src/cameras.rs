@@ -7,7 +7,7 @@ use std::{
 };
 
 use image::RgbImage;
-use nalgebra::{Point2, Vector2};
+use nalgebra::Vector2;
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -20,14 +20,13 @@ use toposlam_model::{
             Unclear, undirected, wrapped,
         },
     },
-    embedded_graph::Dart,
     floor_plan::FloorPlan,
 };
 use toposlam_vision::geometry::unit;
 
 use crate::{
     render::{Building, Effects, Rig, StreamPurpose, exposed, file, stream},
-    truth::{HallwayTruth, JunctionTruth, Truth, angle, true_marker},
+    truth::{HallwayTruth, JunctionTruth, LyingMarker, Truth},
 };
 
 /// The camera of a simulated robot.
@@ -48,6 +47,14 @@ pub(super) struct FrameLight {
 }
 
 impl SimulatedCamera {
+    /// Puts the marker elsewhere, or takes it away.
+    pub(super) fn place_marker(&mut self, marker: Option<LyingMarker>) {
+        match self {
+            Self::Images(camera) => camera.building.place_marker(marker),
+            Self::Scenes(camera) | Self::Marker(camera) => camera.marker = marker,
+        }
+    }
+
     /// The frame with this number from a pose. The robot fills in time and odometry.
     pub(super) fn frame(&mut self, pose: Pose, number: u64, light: FrameLight) -> Frame {
         match self {
@@ -155,9 +162,8 @@ impl RenderingCamera {
 #[derive(Clone, Debug)]
 pub(super) struct SceneCamera {
     pub(super) plan: Arc<FloorPlan>,
-    pub(super) marker: Dart,
-    /// See [`SimulationConfig::marker_off`](crate::SimulationConfig::marker_off).
-    pub(super) marker_off: f64,
+    /// `None` if the robot carries it.
+    pub(super) marker: Option<LyingMarker>,
     /// Multiple of the measured error rates and errors.
     pub(super) noise: f64,
     pub(super) seed: u64,
@@ -219,12 +225,10 @@ impl SceneCamera {
     }
 
     fn marker(&self, pose: Pose, truth: &Truth, chance: &mut Chance) -> Option<MarkerView> {
-        let vertex = self.plan.graph().vertex(self.marker);
-        let near = truth.junctions().iter().any(|near| near.vertex == vertex);
-        let marker = true_marker(&self.plan, self.marker, pose);
-        let along = angle(self.plan.direction(self.marker)) - pose.heading;
-        let position = Point2::from(marker.position) + self.marker_off * unit(along);
-        let [x, y]: [f64; 2] = position.into();
+        let lying = self.marker?;
+        let near = truth.junctions().iter().any(|near| near.vertex == lying.vertex);
+        let marker = lying.seen_from(&self.plan, pose);
+        let [x, y] = marker.position;
         (near && MARKER_SEEN.contains(&x.hypot(y)) && !chance.happens(MISSED)).then(|| MarkerView {
             position: [x + chance.off(PLACE), y + chance.off(PLACE)],
             axis: undirected(marker.axis + chance.off(HEADING)),
@@ -307,6 +311,7 @@ fn mistaken(doors: &mut Vec<f64>, numbers: &mut Xoshiro256PlusPlus) {
 
 #[cfg(test)]
 mod tests {
+    use toposlam_model::embedded_graph::Dart;
     use toposlam_vision::camera;
 
     use super::*;
@@ -326,8 +331,8 @@ mod tests {
         let junction = JunctionTruth::from_plan(&plan, plan.graph().vertex(facing), pose);
         let right = SceneClass::Junction(junction.shape.unwrap());
         let count = |noise: f64| {
-            let camera =
-                SceneCamera { plan: plan.clone(), marker: facing, marker_off: 0.0, noise, seed: 4 };
+            let marker = Some(LyingMarker::along(&plan, facing));
+            let camera = SceneCamera { plan: plan.clone(), marker, noise, seed: 4 };
             let scene = |number| camera.scene(pose, number, FrameLight::default());
             let classes: Vec<_> =
                 (0..20_000).map(|number| SceneClass::from_scene(&scene(number))).collect();

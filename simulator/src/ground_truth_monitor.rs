@@ -5,28 +5,28 @@ use std::fmt;
 
 use toposlam_logs::record::{Event, EventKind, RunObserver};
 use toposlam_model::{
-    aid::State,
+    aid::{AidKind, State},
     driving::{algorithm2::JunctionState, odometry::Odometry, pose::Pose, scene::wrapped},
-    embedded_graph::{Dart, Vertex},
+    embedded_graph::Dart,
     floor_plan::FloorPlan,
+    marker::Directional,
     percept::{Door, Percept},
-    world::{GraphWorld, World},
+    world::{AidHandler, GraphWorld, World},
 };
-use toposlam_vision::geometry::{distance, nearest};
+use toposlam_vision::geometry::nearest;
 
-use crate::truth::{JunctionTruth, angle};
-
-/// A robot is at a junction up to this distance from its turning point, in metres.
-const THERE: f64 = 0.5;
+use crate::truth::{JunctionTruth, angle, junction_at};
 
 /// Follows a robot in the embedded graph of its floor plan, and checks each arrival at a junction.
 #[derive(Clone, Debug)]
 pub struct GroundTruthMonitor<'p> {
     plan: &'p FloorPlan,
-    world: GraphWorld<'p>,
+    world: GraphWorld<'p, AidKind>,
     arrivals: Vec<CheckedArrival>,
     /// The door that the robot has taken, and the odometry of the last frame.
     door: Option<Door>,
+    /// Whether the robot has done something with its aid, since it last arrived, that is not possible.
+    is_refused: bool,
     odometry: Odometry,
 }
 
@@ -80,25 +80,27 @@ impl fmt::Display for TruthDivergence {
 }
 
 impl<'p> GroundTruthMonitor<'p> {
-    /// A robot that stands at the facing dart's junction, its back to the dart's hallway.
-    pub fn new(plan: &'p FloorPlan, facing: Dart) -> Self {
-        Self::at(plan, facing, facing)
+    /// A robot that stands at the facing dart's junction, its back to the dart's hallway, with its marking aid.
+    pub fn new(plan: &'p FloorPlan, aid: AidKind, facing: Dart) -> Self {
+        let world = GraphWorld::with_aid(plan.graph(), aid, facing);
+        let (door, odometry) = (None, Odometry::default());
+        Self { plan, world, arrivals: Vec::new(), door, is_refused: false, odometry }
     }
 
     /// A robot that came to the entry dart's junction by that dart; the marker lies along the facing
     /// dart.
     pub fn at(plan: &'p FloorPlan, facing: Dart, entry: Dart) -> Self {
-        let world = GraphWorld::new(plan.graph(), facing);
-        let state = State { pose: entry, ..world.state() };
-        let world = world.at(state);
-        Self { plan, world, arrivals: Vec::new(), door: None, odometry: Odometry::default() }
+        let at_facing = Self::new(plan, Directional.into(), facing);
+        let state = State { pose: entry, ..at_facing.world.state() };
+        Self { world: at_facing.world.at(state), ..at_facing }
     }
 
     /// Checks an arrival. `entry` is the direction in the plan of what the robot takes for its entry door.
     fn check(&mut self, perceived: Percept, pose: Pose, entry: f64) {
         let door = self.door.take();
         // A door that does not exist leads nowhere; the robot is then somewhere else.
-        let refused = door.is_some_and(|door| self.world.traverse(door).is_err());
+        let was_refused = std::mem::take(&mut self.is_refused);
+        let refused = was_refused | door.is_some_and(|door| self.world.traverse(door).is_err());
         let truly = self.dart_at(pose, entry);
         let reached = truly.filter(|_| !refused);
         let arrival = CheckedArrival {
@@ -116,8 +118,7 @@ impl<'p> GroundTruthMonitor<'p> {
     /// The dart of the junction at a pose whose hallway leads in a direction.
     fn dart_at(&self, pose: Pose, entry: f64) -> Option<Dart> {
         let graph = self.plan.graph();
-        let off = |vertex: &Vertex| distance(self.plan.junction(*vertex).position, pose.position);
-        let vertex = nearest(graph.vertices(), off).filter(|vertex| off(vertex) <= THERE)?;
+        let vertex = junction_at(self.plan, pose.position)?;
         let turned = |dart: &Dart| wrapped(angle(self.plan.direction(*dart)) - entry).abs();
         nearest(graph.darts_of(vertex), turned)
     }
@@ -166,6 +167,9 @@ impl RunObserver for GroundTruthMonitor<'_> {
         match &event.kind {
             EventKind::Frame(frame) => self.odometry = frame.odometry,
             EventKind::Door { door, .. } => self.door = Some(*door),
+            EventKind::Action { action, .. } => {
+                self.is_refused |= self.world.handle(*action).is_err();
+            }
             EventKind::Arrival(arrival) => {
                 if let (Some(pose), Some(entry), Some(percept)) =
                     (event.truth, arrival.entry, arrival.percept())

@@ -136,7 +136,7 @@ pub fn run<'p>(
     settings: &RunSettings,
 ) -> Run<'p> {
     let &RunSettings { method, dart_bound, .. } = settings;
-    let monitor = GroundTruthMonitor::new(plan, facing);
+    let monitor = GroundTruthMonitor::new(plan, method.algorithm().aid(), facing);
     let mut explorer = RobotExplorer::new(robot, sensor, (monitor, observer));
     let (mapping, mapped) = explorer.map(settings);
     let (moves, is_at_obstacle) = (explorer.moves(), explorer.is_at_obstacle());
@@ -187,7 +187,7 @@ pub fn explored(
     algorithm: MappingAlgorithm,
     dart_bound: usize,
 ) -> u64 {
-    let mut world = GraphWorld::new(plan.graph(), facing);
+    let mut world = GraphWorld::with_aid(plan.graph(), algorithm.aid(), facing);
     // An error here is also an error of the robot's run.
     algorithm.map_world(&mut world, dart_bound, &mut ()).0.moves()
 }
@@ -207,12 +207,17 @@ pub fn offline(
 
 #[cfg(test)]
 mod tests {
-    use toposlam_logs::record::NoSensor;
-    use toposlam_model::mapping::RecoveryConfig;
+    use toposlam_logs::record::{NoSensor, RobotSensor};
+    use toposlam_model::{
+        aid::{AidAction, markers::MOVABLE},
+        mapping::RecoveryConfig,
+        percept::Door,
+    };
+    use toposlam_robot::robot::RobotError;
 
     use super::*;
     use crate::{
-        FaultKind, RobotEquipment, RobotFault, SimulationConfig,
+        FaultKind, RobotEquipment, RobotFault, ScannerParams, SimulationConfig,
         evaluation::{
             run_sampler::{JudgedRun, RunSampler},
             sampling::sample,
@@ -247,6 +252,55 @@ mod tests {
                 }
             }
         }
+    }
+
+    fn with_movable_marker(name: &str, start: usize, seed: u64) -> SimulationConfig {
+        let plan = plan_named(name).unwrap();
+        let facing = starts_of(&plan)[start];
+        SimulationConfig::at_start(plan, facing, seed)
+    }
+
+    /// The moves are those of the specification, so the robot picks its marker up and drops it where the specification does.
+    #[test]
+    fn a_plan_is_mapped_with_a_marker_that_the_robot_carries() {
+        let movable = MappingAlgorithm::MovableMarkers(MOVABLE);
+        for (name, starts) in [("shape-8", 3), ("building-12", 1)] {
+            for start in 0..starts {
+                let config = with_movable_marker(name, start, 7 + start as u64);
+                let run = by_scene(&config, movable);
+                assert_eq!(run.outcome(), RunOutcome::Right, "{name} from start {start}");
+                assert!(run.isomorphic() && run.pose_true());
+            }
+        }
+        let config = with_movable_marker("shape-8", 0, 3);
+        let settings = RunSettings::new(movable, DARTS);
+        let sensor = RobotSensor::Laser(Box::default());
+        let robot = config.by_laser(&ScannerParams::default());
+        let run = run(&config.plan, config.marker, robot, sensor, (), &settings);
+        assert_eq!(run.outcome(), RunOutcome::Right, "by laser");
+    }
+
+    #[test]
+    fn a_gripper_holds_one_marker_and_reaches_only_the_junction_of_the_robot() {
+        let config = with_movable_marker("shape-8", 0, 3);
+        let mut robot = config.by_scene();
+        let pick_up = |robot: &mut SimulatedRobot| robot.handle(AidAction::PickUp);
+        let drop = |robot: &mut SimulatedRobot| robot.handle(AidAction::Drop);
+        assert_eq!(drop(&mut robot), Err(RobotError::Gripper { holds: false }));
+        assert_eq!(pick_up(&mut robot), Ok(()));
+        assert_eq!(pick_up(&mut robot), Err(RobotError::Gripper { holds: true }));
+        let at_start = robot.base.pose;
+        // In the middle of a hallway.
+        robot.base.pose.position[0] += 1.3;
+        robot.base.pose.position[1] += 1.3;
+        assert_eq!(drop(&mut robot), Err(RobotError::NotAtJunction));
+        robot.base.pose = at_start;
+        assert_eq!(drop(&mut robot), Ok(()));
+        robot.base.pose.position[0] += 1.3;
+        assert_eq!(pick_up(&mut robot), Err(RobotError::NothingGripped));
+        let send = AidAction::Send { robot: 2, door: Door(0) };
+        let cannot = RobotError::CannotHandle { action: send };
+        assert_eq!(robot.handle(send), Err(cannot));
     }
 
     fn in_shape_6(seed: u64) -> SimulationConfig {

@@ -6,8 +6,9 @@ use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_logs::record::{Frame, RobotSensor};
 use toposlam_model::{
+    aid::AidAction,
     driving::pose::Pose,
-    floor_plan::{Direction, FloorPlan, Rectangle},
+    floor_plan::{FloorPlan, Rectangle},
 };
 use toposlam_robot::{
     robot::{Robot, RobotError, Sample, TimedOdometry},
@@ -22,15 +23,20 @@ use super::{
     motion::{MotionNoise, SimulatedBase},
     scanner::{CorridorPlan, LaserScanner, ScannerParams},
 };
-use crate::render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream};
+use crate::{
+    render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream},
+    truth::{LyingMarker, junction_at, nearest_direction},
+};
 
-/// A SuperScout in a simulated building.
+/// A SuperScout with a gripper in a simulated building.
 #[derive(Debug)]
 pub struct SimulatedRobot {
     plan: Arc<FloorPlan>,
     pub(crate) base: SimulatedBase,
     camera: SimulatedCamera,
     scanner: Option<LaserScanner>,
+    /// `None` if the robot carries it.
+    marker: Option<LyingMarker>,
     faults: Vec<RobotFault>,
     seed: u64,
     frames: u64,
@@ -46,6 +52,8 @@ const OVEREXPOSURE: f64 = 4.0;
 /// Distance of an obstacle ahead of the robot's centre, and its depth, in metres.
 const AHEAD: f64 = 1.2;
 const DEEP: f64 = 0.3;
+/// The time to pick the marker up or to put it down, in seconds.
+const GRIP_TIME: f64 = 5.0;
 
 impl SimulationConfig {
     /// A robot with a camera that renders images of a building.
@@ -77,8 +85,12 @@ impl SimulationConfig {
     }
 
     fn scene_camera(&self) -> SceneCamera {
-        let &Self { ref plan, marker, marker_off, noise, seed, .. } = self;
-        SceneCamera { plan: plan.clone(), marker, marker_off, noise, seed }
+        let &Self { ref plan, noise, seed, .. } = self;
+        SceneCamera { plan: plan.clone(), marker: Some(self.lying_marker()), noise, seed }
+    }
+
+    fn lying_marker(&self) -> LyingMarker {
+        LyingMarker::along(&self.plan, self.marker).moved(self.marker_off)
     }
 }
 
@@ -131,7 +143,8 @@ impl SimulatedRobot {
             base.keep_track();
         }
         let (scanner, last, obstacle) = (None, None, None);
-        Self { plan, base, camera, scanner, faults, seed, frames: 0, last, obstacle }
+        let marker = Some(config.lying_marker());
+        Self { plan, base, camera, scanner, marker, faults, seed, frames: 0, last, obstacle }
     }
 
     #[must_use]
@@ -213,6 +226,29 @@ impl Robot for SimulatedRobot {
         if self.base.begin() { Drive(&mut self.base).forward(distance) } else { Ok(()) }
     }
 
+    /// The gripper reaches everything in the junction where the robot stands.
+    fn handle(&mut self, action: AidAction) -> Result<(), RobotError> {
+        let pose = self.base.pose();
+        self.base.wait(GRIP_TIME);
+        self.marker = match (action, self.marker) {
+            (AidAction::PickUp, None) => return Err(RobotError::Gripper { holds: true }),
+            (AidAction::PickUp, Some(marker)) => {
+                let is_here = junction_at(&self.plan, pose.position) == Some(marker.vertex);
+                if !is_here {
+                    return Err(RobotError::NothingGripped);
+                }
+                None
+            }
+            (AidAction::Drop, Some(_)) => return Err(RobotError::Gripper { holds: false }),
+            (AidAction::Drop, None) => {
+                Some(LyingMarker::below(&self.plan, pose).ok_or(RobotError::NotAtJunction)?)
+            }
+            (action, _) => return Err(RobotError::CannotHandle { action }),
+        };
+        self.camera.place_marker(self.marker);
+        Ok(())
+    }
+
     fn odometry(&self) -> TimedOdometry {
         self.base.reading()
     }
@@ -228,14 +264,7 @@ impl Robot for SimulatedRobot {
 
 /// An obstacle across the hallway ahead of a pose.
 fn across_hallway(pose: Pose, plan: &FloorPlan) -> Rectangle {
-    let (sine, cosine) = pose.heading.sin_cos();
-    let direction = match (cosine.abs() > sine.abs(), cosine > 0.0, sine > 0.0) {
-        (true, true, _) => Direction::East,
-        (true, false, _) => Direction::West,
-        (false, _, true) => Direction::North,
-        (false, _, false) => Direction::South,
-    };
-    let [x, y] = direction.vector();
+    let [x, y] = nearest_direction(pose.heading).vector();
     let middle = [pose.position[0] + AHEAD * x, pose.position[1] + AHEAD * y];
     let half = [x, y].map(|along| if along == 0.0 { plan.hallway_width() } else { DEEP / 2.0 });
     Rectangle::centred(middle, half)

@@ -177,17 +177,72 @@ impl JunctionTruth {
     }
 }
 
-/// A marker as a robot at a pose sees it. It lies on the turning point of the dart's vertex, along the dart. Its door is
-/// known if there is a door behind the robot.
-pub fn true_marker(plan: &FloorPlan, dart: Dart, pose: Pose) -> MarkerView {
-    let junction = JunctionTruth::from_plan(plan, plan.graph().vertex(dart), pose);
-    let points = wrapped(angle(plan.direction(dart)) - pose.heading);
-    let is_it = |&door: &f64| wrapped(door - points).abs() < FRAC_PI_4;
-    let door = junction.doors.iter().position(is_it);
-    MarkerView {
-        position: junction.turning_point,
-        axis: undirected(points),
-        door: junction.shape.and(door).map(|door| Door(door as u32)),
+/// A marker on the floor of a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LyingMarker {
+    /// The junction where it lies.
+    pub vertex: Vertex,
+    /// Its centre.
+    pub position: [f64; 2],
+    /// That of its longer side.
+    pub direction: Direction,
+}
+
+/// A robot is at a junction up to this distance from its turning point, in metres.
+pub const THERE: f64 = 0.5;
+
+impl LyingMarker {
+    /// On the turning point of a dart's vertex, along the dart.
+    pub fn along(plan: &FloorPlan, dart: Dart) -> Self {
+        let vertex = plan.graph().vertex(dart);
+        let position = plan.junction(vertex).position;
+        Self { vertex, position, direction: plan.direction(dart) }
+    }
+
+    /// Where a robot with this pose puts it down: below itself, along the axis of the plan that is nearest to its heading.
+    /// `None` if the robot is at no junction.
+    pub fn below(plan: &FloorPlan, pose: Pose) -> Option<Self> {
+        let vertex = junction_at(plan, pose.position)?;
+        Some(Self { vertex, position: pose.position, direction: nearest_direction(pose.heading) })
+    }
+
+    /// The same marker, farther in its direction, in metres.
+    #[must_use]
+    pub fn moved(self, metres: f64) -> Self {
+        let [east, north] = self.direction.vector();
+        let [x, y] = self.position;
+        Self { position: [x + metres * east, y + metres * north], ..self }
+    }
+
+    /// The marker as a robot at a pose sees it. Its door is known if there is a door behind the robot.
+    pub fn seen_from(&self, plan: &FloorPlan, pose: Pose) -> MarkerView {
+        let junction = JunctionTruth::from_plan(plan, self.vertex, pose);
+        let points = wrapped(angle(self.direction) - pose.heading);
+        let is_it = |&door: &f64| wrapped(door - points).abs() < FRAC_PI_4;
+        let door = junction.doors.iter().position(is_it);
+        let plan_from_robot = Isometry2::new(pose.position.into(), pose.heading);
+        MarkerView {
+            position: plan_from_robot.inverse_transform_point(&self.position.into()).into(),
+            axis: undirected(points),
+            door: junction.shape.and(door).map(|door| Door(door as u32)),
+        }
+    }
+}
+
+/// The junction at a position; `None` if there is none.
+pub fn junction_at(plan: &FloorPlan, position: [f64; 2]) -> Option<Vertex> {
+    let off = |vertex: &Vertex| distance(plan.junction(*vertex).position, position);
+    nearest(plan.graph().vertices(), off).filter(|vertex| off(vertex) <= THERE)
+}
+
+/// The direction that is nearest to a heading.
+pub fn nearest_direction(heading: f64) -> Direction {
+    let (sine, cosine) = heading.sin_cos();
+    match (cosine.abs() > sine.abs(), cosine > 0.0, sine > 0.0) {
+        (true, true, _) => Direction::East,
+        (true, false, _) => Direction::West,
+        (false, _, true) => Direction::North,
+        (false, _, false) => Direction::South,
     }
 }
 
@@ -319,7 +374,7 @@ mod tests {
         let pose = Pose { position: [0.5, 8.0], heading: PI };
         for (dart, door, axis) in [(0, 0, 0.0), (1, 1, FRAC_PI_2)] {
             let dart = plan.graph().dart(corner, dart).unwrap();
-            let marker = true_marker(&plan, dart, pose);
+            let marker = LyingMarker::along(&plan, dart).seen_from(&plan, pose);
             assert_eq!(marker.door, Some(Door(door)));
             close(&[marker.axis.abs()], &[axis]);
             close(&marker.position, &[0.5, 0.0]);

@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{
     Building, BuildingLook, EffectSettings, Effects, Rig, render,
-    truth::{Truth, angle, true_marker},
+    truth::{LyingMarker, Truth, angle},
 };
 
 /// Views of a junction lie from this distance before its turning point to this distance behind it,
@@ -73,7 +73,8 @@ impl RenderedView {
 
     /// The marker's true place, relative to the robot.
     pub fn marker(&self) -> Option<MarkerView> {
-        self.marker.map(|dart| true_marker(&self.plan, dart, self.pose))
+        let marker = self.marker.map(|dart| LyingMarker::along(&self.plan, dart));
+        marker.map(|marker| marker.seen_from(&self.plan, self.pose))
     }
 
     pub fn building(&self) -> Building {

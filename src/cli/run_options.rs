@@ -138,7 +138,7 @@ impl RunOptions {
             world,
             world_hash,
             start,
-            marker: "directional".to_owned(),
+            marker: settings.method.algorithm().aid().name().to_owned(),
             seed,
             calibration: sensors
                 .map(|(camera, _)| calibration::to_toml(camera))
@@ -215,9 +215,12 @@ impl FromArgMatches for GivenOptions {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         // The names of positional arguments and of groups begin with a capital.
         let is_option = |id: &&Id| !id.as_str().starts_with(char::is_uppercase);
+        let is_on_line = |id: &str| matches.value_source(id) == Some(ValueSource::CommandLine);
+        // The algorithm follows from the aid.
+        let has_aid = matches.ids().any(|id| id == "aid") && is_on_line("aid");
         let is_given = |id: &&Id| {
-            matches.value_source(id.as_str()) == Some(ValueSource::CommandLine)
-                || WITH_DEFAULTS.contains(&id.as_str())
+            let has_default = WITH_DEFAULTS.contains(&id.as_str());
+            is_on_line(id.as_str()) || has_default && !(has_aid && *id == "algorithm")
         };
         let option = |id: &Id| {
             let is_flag = matches.try_get_one::<bool>(id.as_str()).is_ok();

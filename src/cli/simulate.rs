@@ -4,14 +4,21 @@ mod feasible;
 
 use std::{io::Write, path::PathBuf, sync::Arc, time::Instant};
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use toposlam_logs::{
     record::{RobotSensor, StoppedBy},
     world_hash,
 };
 use toposlam_model::{
-    embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
+    aid::{self, AidKind, markers::MOVABLE},
+    embedded_graph::Dart,
+    floor_plan::FloorPlan,
+    format::named_world::NamedWorld,
+    mapping::MappingAlgorithm,
+    marker::Directional,
 };
 use toposlam_robot::{
+    budget::RunBudget,
     recording::Recording,
     run_settings::{LaserVertices, RunSettings},
 };
@@ -63,6 +70,9 @@ pub(super) struct SimulateArguments {
     /// The floor plan
     #[arg(id = "PLAN")]
     plan: PathBuf,
+    /// The robot's marking aid: directional, or movable, which it picks up, carries and drops with its gripper
+    #[arg(long, visible_alias = "marker", default_value = "directional", value_name = "KIND", value_parser = robot_aids(), hide_possible_values = true)]
+    aid: AidKind,
     /// Where the robot starts, and the door behind it [default: the plan's own start, or the nearest L]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
@@ -137,7 +147,8 @@ const OF_IMAGES: [&str; 5] = ["calibration", "size", "colours", "look", "effect"
 
 /// Options that need a run; --ros and --ros2 serve the robot instead. All are named: clap drops the requirement of an option
 /// that conflicts.
-const NOT_DRIVEN: [&str; 12] = [
+const NOT_DRIVEN: [&str; 13] = [
+    "aid",
     "algorithm",
     "audit",
     "recover",
@@ -208,6 +219,7 @@ impl SimulateArguments {
             is_enough.map_err(|error| CliError::at("--scanner", error))?;
         }
         let settings = self.options.settings(Some(&world_hash(&world.graph, facing)))?;
+        let settings = self.with_aid(settings)?;
         let laser = scanner.as_ref().map(|_| LaserVertices::OF_HALLWAYS);
         let settings = RunSettings { laser, ..settings };
         let config = SimulationConfig {
@@ -244,6 +256,26 @@ impl SimulateArguments {
             _ => robot,
         };
         Ok(Simulation { world, plan, facing, settings, robot, sensor, sensors, frame_kind })
+    }
+
+    /// The settings of a robot with its marking aid.
+    fn with_aid(&self, settings: RunSettings) -> Result<RunSettings, CliError> {
+        if !self.aid.moves() {
+            return Ok(settings);
+        }
+        let fixed = ["algorithm", "audit", "recover", "resume"];
+        if let Some(option) = fixed.into_iter().find(|option| self.given.has(option)) {
+            let cause = format!("this needs --aid {}", AidKind::from(Directional).name());
+            return Err(CliError::at(format!("--{option}"), cause));
+        }
+        if settings.budget != RunBudget::default() {
+            let cause =
+                "the robot cannot return to a marker that it carries; only darts are counted";
+            return Err(CliError::at("--budget", cause));
+        }
+        let mut algorithms = MappingAlgorithm::all();
+        let algorithm = algorithms.find(|algorithm| algorithm.aid() == self.aid);
+        Ok(RunSettings { method: algorithm.unwrap_or_default().into(), ..settings })
     }
 
     /// Where the run starts. If the plan's own start is not an L, at the L that is nearest to it.
@@ -382,7 +414,9 @@ impl SimulateArguments {
     ) -> RunReport {
         let divergence = run.divergence();
         let is_right = run.outcome() == RunOutcome::Right;
-        let certificate = ended.certificate(&world.graph, facing, is_right);
+        // It is that of a robot with the directional marker.
+        let certificate =
+            (!self.aid.moves()).then(|| ended.certificate(&world.graph, facing, is_right));
         let robot = RobotReport::Simulated {
             plan: world.name.clone(),
             start: world.start_text(facing),
@@ -400,7 +434,7 @@ impl SimulateArguments {
             simulated_seconds: (run.seconds * 1e3).round() / 1e3,
             compute_seconds,
         };
-        RunReport::new(ended, Some(certificate), robot)
+        RunReport::new(ended, certificate, robot)
     }
 }
 
@@ -448,6 +482,13 @@ fn serve(
     Ok(Outcome::Holds)
 }
 
+/// Parses the name of a marking aid that the simulated robot has.
+fn robot_aids() -> impl TypedValueParser<Value = AidKind> {
+    let aids = [AidKind::from(Directional), MOVABLE.into()];
+    let names = aids.map(|aid| PossibleValue::new(aid.name()).help(aid.about()));
+    PossibleValuesParser::new(names).try_map(|name| aid::named(&name))
+}
+
 /// Parses the speed of simulated time. At a higher speed a motion is over before the program sees it.
 fn speed(text: &str) -> Result<f64, String> {
     let times = text.parse().ok().filter(|times: &f64| (0.1..=20.0).contains(times));
@@ -474,6 +515,7 @@ Examples:
   toposlam simulate worlds/shape-6.toml --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --seed 3 --json
   toposlam simulate worlds/building-12.toml --by-scene --algorithm algorithm1
+  toposlam simulate worlds/shape-8.toml --aid movable
   toposlam simulate worlds/shape-6.toml --sensor laser --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --sensor laser --scanner rplidar-a1
   toposlam simulate worlds/shape-6.toml --fault blocked@40
@@ -522,6 +564,7 @@ mod tests {
                 "a.toml --algorithm algorithm1 --audit=1 --budget 20darts --effect none \
                  --effect noise=0.25 --fault carried@40 --fault dropped@3:9 --seed 7 --size 1280x960",
             ),
+            ("a.toml --aid movable", "a.toml --aid movable --seed 0"),
             (
                 "a.toml --scanner it's.toml --sensor laser",
                 r"a.toml --algorithm folding --scanner 'it'\''s.toml' --seed 0 --sensor laser",

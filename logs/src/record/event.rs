@@ -1,6 +1,7 @@
 //! What happens in a run.
 
 use toposlam_model::{
+    aid::AidAction,
     driving::{
         algorithm2::{Command, JunctionState, PathState},
         odometry::Odometry,
@@ -44,6 +45,12 @@ pub enum EventKind {
         /// Which move begins, counted from 1, if known.
         number: Option<u32>,
         door: Door,
+    },
+    /// The robot did something with its marking aid, at the junction of the last arrival.
+    Action {
+        /// After how many moves, if known.
+        number: Option<u32>,
+        action: AidAction,
     },
     Arrival(Arrival),
     Hypothesis {

@@ -25,8 +25,19 @@ pub const JUNCTION_SHAPES: [(JunctionShape, &str); 6] = [
     (JunctionShape([true, false, true, true]), "t-stem-right"),
 ];
 
+/// The marker for which a robot looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SoughtMarker {
+    /// It points along a door of an L, and lies at no other junction.
+    #[default]
+    Pointing,
+    /// It lies at any junction, and points along no door.
+    Lying,
+}
+
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JunctionEstimate {
+    sought: SoughtMarker,
     /// The number of images of each shape, by its [`JunctionShape::code`].
     shapes: [u32; 8],
     marker: Option<Glimpse>,
@@ -100,6 +111,7 @@ impl JunctionEstimate {
     pub fn decided(shape: JunctionShape, sighting: Sighting) -> Self {
         let marker = match sighting {
             Sighting::Pointing(door) => Some(Glimpse { off: 0.0, along_entry: door == Door::BACK }),
+            Sighting::Lying(_) => Some(Glimpse { off: 0.0, along_entry: true }),
             _ => None,
         };
         let mut visit = Self { marker, looked: true, ..Self::default() };
@@ -111,6 +123,18 @@ impl JunctionEstimate {
     pub fn at_marker() -> Self {
         let marker = Some(Glimpse { off: 0.0, along_entry: true });
         Self { marker, looked: true, ..Self::default() }
+    }
+
+    /// The same visit of a robot that looks for this marker.
+    #[must_use]
+    pub fn with_sought(self, sought: SoughtMarker) -> Self {
+        Self { sought, ..self }
+    }
+
+    /// The visit of the same robot at the next junction.
+    #[must_use]
+    pub fn next(&self) -> Self {
+        Self::default().with_sought(self.sought)
     }
 
     pub fn add_scene(&mut self, scene: &Scene) {
@@ -149,17 +173,19 @@ impl JunctionEstimate {
     }
 
     // paper: marker-sense.place
-    /// What the robot perceives at the junction, once the visit is decided. The marker lies only at
-    /// junctions that are Ls; that it does not is known once it would have been seen.
+    /// What the robot perceives at the junction, once the visit is decided. A marker that points lies only at
+    /// junctions that are Ls. That no marker lies here is known once it would have been seen.
     pub fn percept(&self) -> Option<Percept> {
         let shape = self.shape()?;
-        let sighting = match self.marker {
-            Some(Glimpse { along_entry: true, .. }) if shape.is_l() => {
+        let may_lie_here = shape.is_l() || self.sought == SoughtMarker::Lying;
+        let sighting = match (self.marker.filter(|_| may_lie_here), self.sought) {
+            (None, _) if may_lie_here && !self.looked => return None,
+            (None, _) => Sighting::Nothing,
+            (Some(_), SoughtMarker::Lying) => Sighting::Lying(1),
+            (Some(Glimpse { along_entry: true, .. }), SoughtMarker::Pointing) => {
                 Sighting::Pointing(Door::BACK)
             }
-            Some(_) if shape.is_l() => Sighting::Pointing(Door(1)),
-            None if shape.is_l() && !self.looked => return None,
-            _ => Sighting::Nothing,
+            (Some(_), SoughtMarker::Pointing) => Sighting::Pointing(Door(1)),
         };
         Some(Percept { degree: shape.degree(), sighting })
     }
@@ -261,6 +287,24 @@ mod tests {
         }
         // No marker lies anywhere else.
         assert_ne!(seen(&[junction(&[PI], 0.1), junction(&[PI], 0.1)], None).percept(), None);
+    }
+
+    #[test]
+    fn a_marker_that_points_along_no_door_lies_at_any_junction() {
+        let marker = MarkerView { position: [0.5, 0.0], axis: 1.5, door: None };
+        let shapes: [&[f64]; 3] = [&[PI], &[PI, FRAC_PI_2], &[PI, FRAC_PI_2, 0.0]];
+        for doors in shapes {
+            let percept = |distance, marker| {
+                let mut visit = JunctionEstimate::default().with_sought(SoughtMarker::Lying).next();
+                let place = junction(doors, distance);
+                (0..2).for_each(|_| visit.add_scene(&Scene { place: place.clone(), marker }));
+                visit.percept().map(|percept| percept.sighting)
+            };
+            assert_eq!(percept(0.5, Some(marker)), Some(Sighting::Lying(1)));
+            assert_eq!(percept(0.5, None), Some(Sighting::Nothing));
+            // Nothing was seen from where it would be.
+            assert_eq!(percept(0.1, None), None);
+        }
     }
 
     #[test]

@@ -22,6 +22,7 @@ use crate::render::{
     random_stream::{StreamPurpose, about, clouds, stream},
     squares::Squares,
 };
+use crate::truth::LyingMarker;
 
 /// Length and width of the marker, in metres.
 const MARKER: [f64; 2] = [MARKER_LENGTH, MARKER_WIDTH];
@@ -165,7 +166,7 @@ impl Building {
             light: LightMap::new(&floors, &walls, &lights),
             // Edges of lamps may be blurred this far.
             lamps: Squares::new(&floors, 0.5, lights.lamps, |lamp| lamp.rectangle().widened(0.5)),
-            marker: marker.map(|dart| marker_at(plan, dart)),
+            marker: marker.map(|dart| rectangle(&LyingMarker::along(plan, dart))),
             texture: effects.texture as f32,
             gloss: (effects.gloss * look.gloss) as f32,
             scuffs: effects.scuffs as f32,
@@ -181,6 +182,11 @@ impl Building {
 
     pub fn walls(&self) -> &[BuildingWall] {
         &self.walls
+    }
+
+    /// Puts the marker elsewhere, or takes it away.
+    pub(crate) fn place_marker(&mut self, marker: Option<LyingMarker>) {
+        self.marker = marker.as_ref().map(rectangle);
     }
 
     /// Where the marker lies.
@@ -343,11 +349,10 @@ fn poster(colour: [f32; 3], [along, up]: [f32; 2]) -> [f32; 3] {
     }
 }
 
-fn marker_at(plan: &FloorPlan, dart: Dart) -> Rectangle {
-    let position = plan.junction(plan.graph().vertex(dart)).position;
-    let along = plan.direction(dart).vector();
+fn rectangle(marker: &LyingMarker) -> Rectangle {
+    let along = marker.direction.vector();
     let half = along.map(|along| if along == 0.0 { MARKER[1] } else { MARKER[0] } / 2.0);
-    Rectangle::centred(position, half)
+    Rectangle::centred(marker.position, half)
 }
 
 /// Height of the ceiling, in metres.

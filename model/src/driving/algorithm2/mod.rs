@@ -15,7 +15,7 @@ pub use lost::{FrameKind, Lost, LostReason};
 use super::{
     odometry::Odometry,
     scene::{CentreLine, HallwayStatus, HallwayView, JunctionView, Place, Scene, Turning, wrapped},
-    visit::{JunctionEstimate, JunctionShape},
+    visit::{JunctionEstimate, JunctionShape, SoughtMarker},
 };
 use crate::percept::{Door, Percept};
 use dead_reckoning::{DeadReckoning, ON_THE_WAY, Round};
@@ -146,6 +146,13 @@ impl<'a> PathExecution<'a> {
         self
     }
 
+    /// Sets the marker for which the robot looks; by default, one that points.
+    #[must_use]
+    pub fn with_sought(mut self, sought: SoughtMarker) -> Self {
+        self.visit = self.visit.with_sought(sought);
+        self
+    }
+
     pub fn state(&self) -> PathState {
         self.state
     }
@@ -261,7 +268,7 @@ impl<'a> PathExecution<'a> {
         self.door = None;
         // 26
         self.state = PathState::Leaving;
-        self.visit = JunctionEstimate::default();
+        self.visit = self.visit.next();
         self.reckoning.leave(exit);
         // 25
         Ok(Step::Go(Command { turn: exit, forward: UNIT }))
