@@ -379,21 +379,18 @@ impl MovableMarkerRun {
         self.walk.robot = pose;
         self.report(MovableEvent::Found { vertex }, world);
         let edge = self.ends[found].edge;
-        let (place, other) = match perceived.sighting {
-            Sighting::Pointing(door) => {
-                let index = self.map().index(pose);
-                let wrong = Contradiction::KnownPlace { vertex, index, expected, perceived };
-                let dart = self.map().dart(vertex, (index + door.0) % expected.degree);
-                let is_free = |dart: &Dart| *dart != edge && self.map().is_unexplored(*dart);
-                let dart = dart.filter(is_free).ok_or(wrong)?;
-                (Place::At(dart), Some(dart))
-            }
+        let (place, other) = if let Sighting::Pointing(door) = perceived.sighting {
+            let index = self.map().index(pose);
+            let wrong = Contradiction::KnownPlace { vertex, index, expected, perceived };
+            let dart = self.map().dart(vertex, (index + door.0) % expected.degree);
+            let is_free = |dart: &Dart| *dart != edge && self.map().is_unexplored(*dart);
+            let dart = dart.filter(is_free).ok_or(wrong)?;
+            (Place::At(dart), Some(dart))
+        } else {
             // An only unexplored dart of the vertex needs no validation.
-            _ => {
-                let mut darts = self.map().unexplored_at(vertex);
-                let only = darts.next().filter(|_| darts.next().is_none());
-                (Place::Known(vertex), only)
-            }
+            let mut darts = self.map().unexplored_at(vertex);
+            let only = darts.next().filter(|_| darts.next().is_none());
+            (Place::Known(vertex), only)
         };
         if let Place::Marked(marks, _) = std::mem::replace(&mut self.ends[found].place, place) {
             self.pick_up(marks, world)?;
