@@ -12,7 +12,7 @@ use toposlam_model::{
     folding::WorldSearch,
     format::named_world::{NamedWorld, StartError},
     mapping::MappingAlgorithm,
-    marker::{Directional, MarkerKind, NoMarker, UnknownMarker},
+    marker::{Directional, MarkerKind, NoMarker},
 };
 use toposlam_robot::run_settings::RecordedSettings;
 use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
@@ -23,7 +23,7 @@ use super::{
     frame_content::FrameContents,
     judgement::{JudgeError, Judgement, judge},
     known_world::{Known, KnownWorld, MarkerStart},
-    log_head::{LogHead, MarkerNotShown},
+    log_head::{LogHead, MarkerNotShown, RecordedMarkerError},
     marked_visits::{AddedMarker, MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
     possible_visits::PossibleVisits,
     quirks::Quirks,
@@ -97,7 +97,7 @@ pub struct CheckedLog {
 #[derive(Debug, Error)]
 pub enum CheckError {
     #[error(transparent)]
-    Marker(#[from] UnknownMarker),
+    Marker(#[from] RecordedMarkerError),
     #[error("its algorithm `{0}` is unknown")]
     Algorithm(String),
     #[error(transparent)]

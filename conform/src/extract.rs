@@ -17,7 +17,7 @@ use toposlam_logs::{
     topic_map::{BoundTopicMap, Role, TopicMap},
 };
 use toposlam_model::{
-    driving::odometry::Odometry, enumerate::Watch, format::document::DocumentError,
+    aid::AidAction, driving::odometry::Odometry, enumerate::Watch, format::document::DocumentError,
     measurement::MeasurementNoise,
 };
 use toposlam_robot::measured_hallway::log_noise;
@@ -144,6 +144,10 @@ pub enum ExtractError {
     /// The time of a percept or door is before that of the last one.
     #[error("message {message}: {order}")]
     OutOfOrder { message: u64, order: OutOfOrder },
+    #[error(
+        "message {message}: its robot did `{action}`; only logs with a fixed marker are checked"
+    )]
+    Action { message: u64, action: AidAction },
 }
 
 /// The number of images that are sensed in parallel.
@@ -199,7 +203,7 @@ impl Evidence {
     /// The roles that it needs, and what it uses besides.
     fn roles(self) -> &'static [Role] {
         match self {
-            Self::Recorded => &[Role::Percept, Role::Door, Role::Odometry],
+            Self::Recorded => &[Role::Percept, Role::Door, Role::Action, Role::Odometry],
             Self::Scenes => &[Role::Scene, Role::Odometry],
             Self::Images => &[Role::Image, Role::Odometry],
             Self::Laser => &[Role::Scan, Role::Odometry, Role::Marker],
@@ -228,7 +232,7 @@ pub fn extract(
     let ExtractConfig { evidence, sensor, marked, laser, driven } = *config;
     // Only the recorded events show that a robot recovered.
     let recorded: &[Role] = match evidence {
-        Evidence::Scenes | Evidence::Images => &[Role::Percept, Role::Door],
+        Evidence::Scenes | Evidence::Images => &[Role::Percept, Role::Door, Role::Action],
         Evidence::Recorded | Evidence::Laser => &[],
     };
     let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]).chain(recorded);
@@ -511,6 +515,9 @@ impl<W: Watch> Extraction<'_, W> {
                 if self.waiting.len() >= TOGETHER {
                     self.look()?;
                 }
+            }
+            EventKind::Action { action, .. } => {
+                return Err(ExtractError::Action { message: id.0, action });
             }
             EventKind::End(end) => self.run.events.end = Some(end),
             EventKind::Map(map) => self.run.events.map = Some(map),

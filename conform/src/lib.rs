@@ -57,7 +57,7 @@ pub use judgement::{
     ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, Unproved, judge,
 };
 pub use known_world::{Known, KnownWorld};
-pub use log_head::{LogHead, MarkerNotShown, RESUMED_REMARK};
+pub use log_head::{LogHead, MarkerNotShown, RESUMED_REMARK, RecordedMarkerError};
 pub use marked_visits::{
     AddedMarker, MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits,
     marker_at_start,

@@ -4,6 +4,7 @@
 use thiserror::Error;
 use toposlam_logs::{messages::Run, world_hash};
 use toposlam_model::{
+    aid::{self, AidKind},
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
@@ -24,14 +25,27 @@ pub struct MarkerNotShown {
     pub algorithm: MappingAlgorithm,
 }
 
+/// The head of a log names no fixed marker.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum RecordedMarkerError {
+    #[error(transparent)]
+    Unknown(#[from] UnknownMarker),
+    #[error("its robot maps with `{}`, which moves; only logs with a fixed marker are checked", .0.name())]
+    Moves(AidKind),
+}
+
 impl<'r> LogHead<'r> {
     fn marker_name(self) -> Option<&'r str> {
         self.0.map(|run| run.marker.as_str()).filter(|name| !name.is_empty())
     }
 
     /// The marker of the robot: without a record, a directional one.
-    pub(crate) fn marker(self) -> Result<MarkerKind, UnknownMarker> {
-        self.marker_name().map_or(Ok(Directional), marker::named)
+    pub(crate) fn marker(self) -> Result<MarkerKind, RecordedMarkerError> {
+        let Some(name) = self.marker_name() else { return Ok(Directional) };
+        match aid::named(name) {
+            Ok(aid) if aid.moves() => Err(RecordedMarkerError::Moves(aid)),
+            _ => Ok(marker::named(name)?),
+        }
     }
 
     /// How the robot mapped, and within which limits, by this algorithm if one is given; without either by

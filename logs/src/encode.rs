@@ -3,6 +3,7 @@
 //! What a message does not have is -1 or [`UNKNOWN`] there, and `None` everywhere else.
 
 use toposlam_model::{
+    aid::{AidAction, UnknownAction},
     driving::{
         algorithm2::{self, PathState},
         scene::{
@@ -16,7 +17,7 @@ use toposlam_model::{
     percept::{self, Sighting},
 };
 
-use super::messages::{Command, Door, End, Hypothesis, Map, Percept, Scene, Stamp};
+use super::messages::{Action, Command, Door, End, Hypothesis, Map, Percept, Scene, Stamp};
 use crate::record::{Arrival, EventKind, MapRecord, RunEnd, RunEnding};
 
 const NONE: i32 = -1;
@@ -174,6 +175,15 @@ pub(super) fn door_of(message: &Door) -> EventKind {
     EventKind::Door { number: known(message.r#move), door: percept::Door(message.door) }
 }
 
+pub(super) fn action(stamp: Stamp, number: Option<u32>, action: AidAction) -> Action {
+    Action { stamp, r#move: number.unwrap_or(UNKNOWN), action: action.to_string() }
+}
+
+pub(super) fn action_of(message: &Action) -> Result<EventKind, String> {
+    let action = message.action.parse().map_err(|error: UnknownAction| error.to_string())?;
+    Ok(EventKind::Action { number: known(message.r#move), action })
+}
+
 fn known(number: u32) -> Option<u32> {
     (number != UNKNOWN).then_some(number)
 }
@@ -287,6 +297,18 @@ pub(super) fn end_of(message: End) -> Option<RunEnd> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_action_is_read_as_it_was_written() {
+        for done in [AidAction::PickUp, AidAction::Send { robot: 2, door: percept::Door(1) }] {
+            for number in [None, Some(4)] {
+                let message = action(Stamp::default(), number, done);
+                assert_eq!(action_of(&message), Ok(EventKind::Action { number, action: done }));
+            }
+        }
+        let wrong = Action { action: "lift".to_owned(), ..Action::default() };
+        assert!(action_of(&wrong).unwrap_err().starts_with("`lift` is not an action"));
+    }
 
     #[test]
     fn a_scene_is_read_as_it_was_written() {

@@ -241,6 +241,10 @@ impl Entries<'_> {
             let visit = degree.map(|degree| EventKind::Arrival(arrival(degree)).into());
             contents.push(visit.unwrap_or(Content::Undecided));
         }
+        if self.bound.carries(Role::Door) {
+            let done = event.actions()?.into_iter();
+            contents.extend(done.map(|action| EventKind::Action { number: moves, action }.into()));
+        }
         if let Some(door) = event.door.filter(|_| self.bound.carries(Role::Door)) {
             let number = moves.map(|moves| moves.saturating_add(1));
             contents.push(EventKind::Door { number, door: Door(door) }.into());
@@ -325,6 +329,7 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
             number: whole(carried, value, MessagePart::Move)?,
             door: Door(whole(carried, value, MessagePart::Door)?.unwrap_or_default()),
         },
+        Role::Action => encode::action_of(&own(value)?)?,
         Role::Command => encode::command_of(&own(value)?),
         Role::Map => EventKind::Map(encode::map_of(&own(value)?)),
         Role::End => {

@@ -1,5 +1,5 @@
 //! Events as lines: JSON objects, or CSV with a header. Each is a junction that the robot visited: its degree,
-//! the door by which the robot left, and the marker.
+//! the door by which the robot left, the marker, and what the robot did with it.
 //!
 //! ```text
 //! {"kind":"event","index":3,"stamp":41.2,"degree":3,"door":1,"marker":null}
@@ -11,7 +11,10 @@ use serde::{
     Deserialize, Deserializer,
     de::{Error, Unexpected, Visitor},
 };
-use toposlam_model::percept::Sighting;
+use toposlam_model::{
+    aid::{AidAction, UnknownAction},
+    percept::Sighting,
+};
 
 use super::encode;
 
@@ -22,7 +25,7 @@ pub(super) struct Columns(Vec<Option<usize>>);
 /// The end of the range of stamps, in seconds: 64 bits of nanoseconds, to the year 2540.
 const LATEST: f64 = 1.8e10;
 
-const NAMES: [&str; 6] = ["index", "stamp", "degree", "door", "marker", "turned_back"];
+const NAMES: [&str; 7] = ["index", "stamp", "degree", "door", "marker", "actions", "turned_back"];
 
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub(super) struct VisitLine {
@@ -37,6 +40,8 @@ pub(super) struct VisitLine {
     pub(super) door: Option<u32>,
     /// The marker; `None`: not recorded.
     marker: Option<LineMarker>,
+    /// What the robot did with its marking aid before it left, in words with spaces between them.
+    actions: Option<String>,
     #[serde(default)]
     pub(super) turned_back: Option<bool>,
 }
@@ -169,6 +174,12 @@ impl VisitLine {
         };
         self.marker.map(sighting).transpose()
     }
+
+    /// What the robot did with its marking aid before it left.
+    pub(super) fn actions(&self) -> Result<Vec<AidAction>, String> {
+        let words = self.actions.iter().flat_map(|words| words.split_whitespace());
+        words.map(|word| word.parse().map_err(|error: UnknownAction| error.to_string())).collect()
+    }
 }
 
 #[derive(Deserialize)]
@@ -245,6 +256,7 @@ impl Columns {
                 "stamp" => event.stamp = Some(cell.parse().map_err(|_| wrong())?),
                 "degree" => event.degree = LineDegree::Given(Some(whole()?)),
                 "door" => event.door = Some(whole()?),
+                "actions" => event.actions = Some(cell.into_owned()),
                 "marker" => {
                     let seen = bool_cell(&cell).map(LineMarker::Seen);
                     let door = || whole_cell(&cell).map(LineMarker::Door);
@@ -330,6 +342,7 @@ pub(super) fn parse(line: &[u8], columns: Option<&Columns>) -> Result<Parsed, St
         return Err(format!("its stamp is {stamp:?}; seconds are expected"));
     }
     event.sighting()?;
+    event.actions()?;
     let LineDegree::Given(degree) = event.degree else { return Err("it has no degree".to_owned()) };
     Ok(Parsed::Event(event, degree))
 }
@@ -362,6 +375,12 @@ mod tests {
             };
             assert_eq!(parse(csv.as_bytes(), Some(&columns)), Ok(Parsed::Event(event, degree)));
         }
+        let columns_with_actions = Columns::read(b"degree,door,actions").unwrap();
+        let json = br#"{"degree":2,"door":1,"actions":"pick-up drop"}"#;
+        let csv = parse(b"2,1,pick-up drop", Some(&columns_with_actions)).unwrap();
+        assert_eq!(parse(json, None), Ok(csv.clone()));
+        let Parsed::Event(event, _) = csv else { panic!("{csv:?}") };
+        assert_eq!(event.actions(), Ok(vec![AidAction::PickUp, AidAction::Drop]));
         let quoted =
             Columns::read(b"\"index\",stamp,\"degree\",door,marker,turned_back,\"a, note\"");
         assert_eq!(quoted, Some(Columns(columns.0.clone())));
@@ -393,6 +412,8 @@ degree,door,stamp | 2,1,9e99 | its stamp is 9e99; seconds are expected
  | {"degree":2,"marker":-9} | its marker is -9, which is not a door and not -1, no marker
  | {"degree":2,"marker":99999999999} | its marker is 99999999999, which is not a door and not -1, no marker
  | {"degree":2,"marker":"north"} | invalid type: string "north", expected the marker: a door, -1, true, false or null
+degree,door,actions | 2,1,lift | `lift` is not an action; write a door number, pick-up, drop, pick-up-2, drop-2 or send-2:1
+ | {"degree":2,"actions":"drop 2"} | `2` is not an action; write a door number, pick-up, drop, pick-up-2, drop-2 or send-2:1
 degree,door | 2 | it has 1 cells, and the header 2
 degree,door | 2,x | its door is "x"
 degree,door | 2,1.5 | its door is "1.5"

@@ -87,6 +87,10 @@ own! {
         r#move: u32,
         door: u32,
     }
+    Action "/toposlam/action" {
+        r#move: u32,
+        action: String,
+    }
     Percept "/toposlam/percept" {
         r#move: u32,
         degree: u32,

@@ -125,9 +125,12 @@ impl<W: Write> RunObserver for Recorder<W> {
                     self.write_own(&encode::command(stamp, *state, *command));
                 }
             }
-            EventKind::LookAround { .. } | EventKind::Action { .. } => {}
+            EventKind::LookAround { .. } => {}
             EventKind::Door { number, door } => {
                 self.write_own(&encode::door(stamp, *number, *door));
+            }
+            EventKind::Action { number, action } => {
+                self.write_own(&encode::action(stamp, *number, *action));
             }
             EventKind::Arrival(arrival) => self.write_own(&encode::arrival(stamp, arrival)),
             EventKind::Hypothesis { moves, event } => {

@@ -2,9 +2,10 @@
 //! shorter logs.
 
 use toposlam_logs::{messages::Run, world_hash};
-use toposlam_model::{format::named_world::NamedWorld, marker::NoMarker};
+use toposlam_model::{aid, format::named_world::NamedWorld, marker::NoMarker};
 
 use super::*;
+use crate::log_head::RecordedMarkerError;
 
 #[test]
 fn a_log_may_show_a_marker_unless_it_records_that_none_was_seen() {
@@ -53,6 +54,9 @@ fn a_head_decides_the_marker_the_algorithm_the_start_and_the_world() {
     let head = LogHead(Some(&run));
     assert_eq!(head.marker().unwrap().name(), "undirected");
     assert_eq!(LogHead(None).marker().unwrap().name(), "directional");
+    let carried = Run { marker: "movable".to_owned(), ..run.clone() };
+    let moves = RecordedMarkerError::Moves(aid::named("movable").unwrap());
+    assert_eq!(LogHead(Some(&carried)).marker(), Err(moves));
     assert_eq!(head.settings(None).unwrap().budget.moves, Some(25));
     let unknown = Run { algorithm: "bold".to_owned(), ..run.clone() };
     assert_eq!(LogHead(Some(&unknown)).settings(None), Err("bold".to_owned()));

@@ -29,6 +29,7 @@ toposlam_model::words! {
         Motion = "motion",
         Percept = "percept",
         Door = "door",
+        Action = "action",
         Run = "run",
         Scene = "scene",
         Command = "command",
@@ -110,6 +111,7 @@ impl Role {
         Some(match (self, type_name) {
             (Self::Percept, "toposlam_msgs/Percept")
             | (Self::Door, "toposlam_msgs/Door")
+            | (Self::Action, "toposlam_msgs/Action")
             | (Self::Run, "toposlam_msgs/Run")
             | (Self::Scene, "toposlam_msgs/Scene")
             | (Self::Command, "toposlam_msgs/Command")
