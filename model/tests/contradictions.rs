@@ -3,14 +3,14 @@
 use proptest::prelude::*;
 use toposlam_model::{
     aid::{AidAction, RefusedAction},
-    embedded_graph::{MAX_EDGES, Vertex},
+    embedded_graph::{Dart, EmbeddedGraph, MAX_EDGES, Vertex},
     folding::ContradictionReason,
     mapping::{
-        Algorithm1Run, Contradiction, Explorer, FoldingRun, MappingError, MovableMarkerRun,
-        ObservedWorld, explore,
+        Algorithm1Run, Contradiction, Explorer, FoldingRun, MappingAlgorithm, MappingError,
+        MovableMarkerRun, ObservedWorld, explore,
     },
-    percept::{Door, Percept, Sighting},
-    world::{AidHandler, World},
+    percept::{Door, DoorSet, MarkerSet, OtherRobot, Percept, Sighting, StringView, TeamView},
+    world::{AidHandler, GraphWorld, World},
 };
 
 use crate::{marked, plain};
@@ -54,6 +54,9 @@ impl AidHandler for ScriptedWorld<'_> {
     type Error = RefusedAction;
 
     fn handle(&mut self, action: AidAction) -> Result<(), RefusedAction> {
+        if let AidAction::Send { .. } = action {
+            self.moves += 1;
+        }
         let refused = |refused: &RefusedAction| {
             action == AidAction::PickUp && *refused == RefusedAction::NothingToPickUp
         };
@@ -291,5 +294,48 @@ proptest! {
         // Also one that never lies about the marker while the robot carries it or looks for it in vain.
         let degrees = sensed(lying(2), |degree, number| plain(1 + (degree + number) % 3));
         let _ = run::<MovableMarkerRun>(&degrees, BOUND);
+    }
+}
+
+/// Any sighting, also one that no aid has there.
+fn any_sighting() -> impl Strategy<Value = Sighting> {
+    let robot = (0..6_u8, 0..5_u32).prop_map(|(kind, number)| match kind {
+        0 => OtherRobot::Absent,
+        1 => OtherRobot::Elsewhere { degree: number },
+        2 => OtherRobot::Here,
+        3 => OtherRobot::HereAlong(Door(number)),
+        4 => OtherRobot::WithSecond,
+        _ => OtherRobot::WithSecondAlong(Door(number)),
+    });
+    let string = (0..32_u32, any::<[bool; 2]>(), proptest::option::of(0..5_u32));
+    let string = string.prop_map(|(bits, [fixed_end, free_end], hand)| {
+        let mut doors = DoorSet::default();
+        (0..5).filter(|door| bits >> door & 1 == 1).for_each(|door| doors.insert(Door(door)));
+        StringView { doors, fixed_end, free_end, hand: hand.map(Door) }
+    });
+    prop_oneof![
+        1 => Just(Sighting::Nothing),
+        1 => (0..5_u32).prop_map(|door| Sighting::Pointing(Door(door))),
+        1 => (0..5_u32).prop_map(Sighting::Lying),
+        1 => (0..4_usize).prop_map(|at| Sighting::These(MarkerSet::from_numbers([at]).unwrap())),
+        3 => string.prop_map(Sighting::String),
+        5 => [robot.clone(), robot].prop_map(|robots| Sighting::Team(TeamView(robots))),
+    ]
+}
+
+proptest! {
+    /// The first percept is that of a ring; the others lie.
+    #[test]
+    fn with_every_aid_every_sensor_comes_to_an_end(
+        others in proptest::collection::vec((0..5_u32, any_sighting()), 1..60),
+    ) {
+        let ring = EmbeddedGraph::cycle(3);
+        for algorithm in MappingAlgorithm::all() {
+            let first = GraphWorld::with_aid(&ring, algorithm.aid(), Dart(0)).sensed();
+            let others = others.iter().map(|&(degree, sighting)| Percept { degree, sighting });
+            let percepts: Vec<_> = std::iter::once(first).chain(others).collect();
+            let mut world = ScriptedWorld { percepts: &percepts, moves: 0, refused: None };
+            let _ = algorithm.map_world(&mut world, BOUND, &mut ());
+        }
     }
 }

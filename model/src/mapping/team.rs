@@ -256,11 +256,13 @@ impl TeamRun {
         match (seen[scout], seen[0]) {
             (OtherRobot::Here | OtherRobot::HereAlong(_), _) => Ok((percept.degree, false)),
             (OtherRobot::WithSecond | OtherRobot::WithSecondAlong(_), second) => match second {
-                OtherRobot::Elsewhere { degree } => Ok((degree, false)),
+                OtherRobot::Elsewhere { degree: degree @ 1.. } => Ok((degree, false)),
                 _ => Err(impossible),
             },
-            (OtherRobot::Elsewhere { degree }, _) => Ok((degree, !(scout == 0 && with_second))),
-            (OtherRobot::Absent, _) => Err(impossible),
+            (OtherRobot::Elsewhere { degree: degree @ 1.. }, _) => {
+                Ok((degree, !(scout == 0 && with_second)))
+            }
+            (OtherRobot::Elsewhere { .. } | OtherRobot::Absent, _) => Err(impossible),
         }
     }
 
