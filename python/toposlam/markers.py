@@ -211,7 +211,10 @@ def sensed(marker: Marker, start: _core.Start, world: World | None) -> Union[str
 
 
 def drawn(marker: Marker) -> str:
-    """A marker in a picture: what a function of a pose adds to percepts lies nowhere."""
+    """A marker in a picture: what a function of a pose adds to percepts lies nowhere. At the start a string
+    as long as it takes looks like any other."""
+    if marker == "string":
+        return "string-1"
     return marker if isinstance(marker, str) else "none"
 
 
