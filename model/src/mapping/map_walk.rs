@@ -3,8 +3,8 @@
 use std::mem;
 
 use super::{
-    Contradiction, FACING, InvalidStep, MappingError, MappingEvent, PartialMap, Relocate,
-    folding_explorer::ArrivalMeasurement, tree::BreadthFirstTree,
+    Contradiction, FACING, InvalidStep, MapDart, MappingError, MappingEvent, PartialMap, Relocate,
+    StepPurpose, folding_explorer::ArrivalMeasurement, tree::BreadthFirstTree,
 };
 use crate::{
     aid::Aid,
@@ -265,6 +265,19 @@ impl MapWalk {
         }
         self.way = way;
         Ok(())
+    }
+
+    /// The known vertices in the preorder of a tree of shortest paths from the robot: in this order a depth-first walk
+    /// meets them.
+    pub(super) fn write_preorder(&mut self, order: &mut Vec<Vertex>) {
+        self.from_robot.grow_from(&self.map, self.map.vertex(self.robot));
+        self.from_robot.grow_whole(&self.map);
+        self.from_robot.preorder(&self.map, order);
+    }
+
+    /// The purpose of a step that explores an edge; without one, of the end of the run.
+    pub(super) fn purpose(&self, edge: Option<Dart>) -> StepPurpose {
+        edge.map_or(StepPurpose::Done, |edge| StepPurpose::Explore(MapDart::new(&self.map, edge)))
     }
 
     /// The darts of a shortest path from the robot's vertex to a known one.

@@ -3,6 +3,7 @@
 
 mod algorithm1;
 pub(crate) mod audit;
+mod candidates;
 mod contradiction;
 mod explored_map;
 mod explorer;

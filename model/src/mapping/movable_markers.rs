@@ -9,8 +9,9 @@
 mod carried;
 
 use super::{
-    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, Mapped,
-    MappingError, MappingEvent, MovableEvent, ObservedWorld, StepPurpose, map_walk::has_walk,
+    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapWalk, Mapped, MappingError,
+    MappingEvent, MovableEvent, ObservedWorld, StepPurpose, candidates::Candidates,
+    map_walk::has_walk,
 };
 use crate::{
     aid::{AidAction, AidKind, markers::MOVABLE},
@@ -30,7 +31,7 @@ pub struct MovableMarkerRun {
     carried: CarriedMarkers,
     /// The edges of this round, in the order in which they were followed.
     ends: Vec<UnknownEnd>,
-    /// No marks are left that would tell the next place from those of this round.
+    /// No markers are left that distinguish the next place from those of this round.
     is_full: bool,
     /// The known vertices that an unknown end may be and that were not searched yet. The next one is the last.
     candidates: Vec<Vertex>,
@@ -48,13 +49,13 @@ has_walk!(MovableMarkerRun);
 struct UnknownEnd {
     edge: Dart,
     degree: u32,
-    place: Place,
+    place: EndPlace,
 }
 
 #[derive(Clone, Debug)]
-enum Place {
-    /// Markers lie there. For each known vertex, whether it may be the place.
-    Marked(Marks, Vec<bool>),
+enum EndPlace {
+    /// Markers lie there.
+    Marked(Marks, Candidates),
     /// It is the place of another end of this round, with this number.
     SameAs(usize),
     Known(Vertex),
@@ -174,7 +175,7 @@ impl Explorer for MovableMarkerRun {
     }
 
     fn purpose(&self, edge: Option<Dart>) -> StepPurpose {
-        edge.map_or(StepPurpose::Done, |edge| StepPurpose::Explore(MapDart::new(self.map(), edge)))
+        self.walk.purpose(edge)
     }
 
     /// With undirected markers `3 n (n - 1) / 2 + (m - n + 1) (6 n - 7)`, which is less than `6 m n`; with a directional
@@ -253,16 +254,18 @@ impl MovableMarkerRun {
             let same =
                 same.ok_or(Contradiction::SecondMarker { vertex, index, perceived: percept })?;
             self.report(MovableEvent::Arrived { edge, percept, candidates: 1 }, world);
-            return self.leave_end(UnknownEnd { edge, degree, place: Place::SameAs(same) }, world);
+            return self
+                .leave_end(UnknownEnd { edge, degree, place: EndPlace::SameAs(same) }, world);
         }
-        let (may_be, candidates) = self.candidates_of(edge, degree);
+        let places = self.candidates_of(edge, degree);
+        let candidates = places.count();
         self.report(MovableEvent::Arrived { edge, percept, candidates }, world);
         if candidates == 0 || InjectedFlaw::EveryPlaceIsNew.is_present() {
             self.walk.add_place(Door::BACK, world)?;
             return Ok(());
         }
         let lying = self.ends.iter().filter_map(|end| match &end.place {
-            Place::Marked(marks, _) if end.degree == degree => Some(*marks),
+            EndPlace::Marked(marks, _) if end.degree == degree => Some(*marks),
             _ => None,
         });
         let Some(marks) = self.carried.marks_besides(lying) else {
@@ -270,7 +273,7 @@ impl MovableMarkerRun {
             return self.go_back(world);
         };
         self.drop(marks, world)?;
-        self.leave_end(UnknownEnd { edge, degree, place: Place::Marked(marks, may_be) }, world)
+        self.leave_end(UnknownEnd { edge, degree, place: EndPlace::Marked(marks, places) }, world)
     }
 
     fn leave_end<W: ObservedWorld>(&mut self, end: UnknownEnd, world: &mut W) -> Mapped<W> {
@@ -278,39 +281,19 @@ impl MovableMarkerRun {
         self.go_back(world)
     }
 
-    /// For each known vertex, whether it can be the unknown end of an edge; and the number of those. It looks like it, and
-    /// has an unexplored dart, besides this one. In a world without loops and parallel edges it is neither the known end
-    /// nor joined to it.
-    fn candidates_of(&self, edge: Dart, degree: u32) -> (Vec<bool>, usize) {
-        let map = self.map();
-        let known_end = map.vertex(edge);
-        let can_be = |vertex| {
-            let besides = u32::from(vertex == known_end);
-            map.degree(vertex) == degree && map.unexplored_count_at(vertex) > besides
-        };
-        let mut may_be: Vec<_> = map.vertices().map(can_be).collect();
-        if !self.points() {
-            may_be[known_end.at()] = false;
-            for far in map.darts_of(known_end).filter_map(|dart| map.opposite(dart)) {
-                may_be[map.vertex(far).at()] = false;
-            }
-        }
-        let candidates = may_be.iter().filter(|may_be| **may_be).count();
-        (may_be, candidates)
+    fn candidates_of(&self, edge: Dart, degree: u32) -> Candidates {
+        let places = Candidates::of_end(self.map(), edge, degree);
+        if self.points() { places } else { places.in_simple_world(self.map(), edge) }
     }
 
     /// Place validation: looks for the markers at all known vertices where they can lie, in the order in which a
     /// depth-first walk of the shortest paths from the robot meets them.
     // paper: movable.place, movable.known
     fn search<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
-        let here = self.map().vertex(self.walk.robot);
-        let Self { walk: MapWalk { map, from_robot, .. }, candidates, .. } = self;
-        candidates.clear();
-        if self.ends.iter().any(|end| matches!(end.place, Place::Marked(..))) {
-            from_robot.grow_from(map, here);
-            from_robot.grow_whole(map);
-            from_robot.preorder(map, candidates);
-            candidates.reverse();
+        self.candidates.clear();
+        if self.ends.iter().any(|end| matches!(end.place, EndPlace::Marked(..))) {
+            self.walk.write_preorder(&mut self.candidates);
+            self.candidates.reverse();
         }
         while let Some(candidate) = self.next_candidate() {
             self.look_for_markers(candidate, world)?;
@@ -385,14 +368,14 @@ impl MovableMarkerRun {
             let dart = self.map().dart(vertex, (index + door.0) % expected.degree);
             let is_free = |dart: &Dart| *dart != edge && self.map().is_unexplored(*dart);
             let dart = dart.filter(is_free).ok_or(wrong)?;
-            (Place::At(dart), Some(dart))
+            (EndPlace::At(dart), Some(dart))
         } else {
             // An only unexplored dart of the vertex needs no validation.
             let mut darts = self.map().unexplored_at(vertex);
             let only = darts.next().filter(|_| darts.next().is_none());
-            (Place::Known(vertex), only)
+            (EndPlace::Known(vertex), only)
         };
-        if let Place::Marked(marks, _) = std::mem::replace(&mut self.ends[found].place, place) {
+        if let EndPlace::Marked(marks, _) = std::mem::replace(&mut self.ends[found].place, place) {
             self.pick_up(marks, world)?;
         }
         if let Some(other) = other {
@@ -410,13 +393,13 @@ impl MovableMarkerRun {
     fn fetch<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         while let Some(next) = self.nearest_marked() {
             let UnknownEnd { edge, degree, .. } = self.ends[next];
-            let Place::Marked(marks, _) = self.ends[next].place else { break };
+            let EndPlace::Marked(marks, _) = self.ends[next].place else { break };
             self.report(MovableEvent::NotFound, world);
             if InjectedFlaw::LeftBehind.is_present() {
                 self.walk.edge = Some(edge);
                 self.walk.arrival = Percept { degree, sighting: Sighting::Nothing };
                 let vertex = self.walk.add_place(Door::BACK, world)?;
-                self.ends[next].place = Place::Known(vertex);
+                self.ends[next].place = EndPlace::Known(vertex);
                 continue;
             }
             self.travel_to(self.map().vertex(edge), world)?;
@@ -432,7 +415,7 @@ impl MovableMarkerRun {
                 self.pick_up(marks, world)?;
             }
             let vertex = self.walk.add_place(Door::BACK, world)?;
-            self.ends[next].place = Place::Known(vertex);
+            self.ends[next].place = EndPlace::Known(vertex);
         }
         Ok(())
     }
@@ -441,7 +424,7 @@ impl MovableMarkerRun {
     fn nearest_marked(&mut self) -> Option<usize> {
         let here = self.map().vertex(self.walk.robot);
         let Self { walk: MapWalk { map, from_robot, .. }, ends, .. } = self;
-        let marked = |(_, end): &(usize, &UnknownEnd)| matches!(end.place, Place::Marked(..));
+        let marked = |(_, end): &(usize, &UnknownEnd)| matches!(end.place, EndPlace::Marked(..));
         let mut marked = ends.iter().enumerate().filter(marked);
         let first = marked.next()?;
         let Some(second) = marked.next() else { return Some(first.0) };
@@ -461,8 +444,8 @@ impl MovableMarkerRun {
                 continue;
             }
             let other = match self.place_of(at) {
-                Some(Place::At(dart)) => dart,
-                Some(Place::Known(vertex)) => self.validate_back_link(edge, vertex, world)?,
+                Some(EndPlace::At(dart)) => dart,
+                Some(EndPlace::Known(vertex)) => self.validate_back_link(edge, vertex, world)?,
                 _ => return Err(InvalidStep::NoEdge.into()),
             };
             self.walk.edge = Some(edge);
@@ -472,10 +455,10 @@ impl MovableMarkerRun {
     }
 
     /// Where an end of this round is, after all markers were found or fetched.
-    fn place_of(&self, end: usize) -> Option<Place> {
+    fn place_of(&self, end: usize) -> Option<EndPlace> {
         match &self.ends.get(end)?.place {
-            Place::SameAs(earlier) if *earlier < end => match self.place_of(*earlier)? {
-                Place::At(dart) => Some(Place::Known(self.map().vertex(dart))),
+            EndPlace::SameAs(earlier) if *earlier < end => match self.place_of(*earlier)? {
+                EndPlace::At(dart) => Some(EndPlace::Known(self.map().vertex(dart))),
                 place => Some(place),
             },
             place => Some(place.clone()),
@@ -588,7 +571,7 @@ impl UnknownEnd {
     /// Whether its markers lie at a place that looks like this.
     fn looks_like(&self, place: Percept) -> bool {
         match &self.place {
-            Place::Marked(marks, _) => {
+            EndPlace::Marked(marks, _) => {
                 self.degree == place.degree && marks.are_seen(place.sighting)
             }
             _ => false,
@@ -596,16 +579,13 @@ impl UnknownEnd {
     }
 
     fn may_be(&self, vertex: Vertex) -> bool {
-        match &self.place {
-            Place::Marked(_, may_be) => may_be.get(vertex.at()) == Some(&true),
-            _ => false,
-        }
+        matches!(&self.place, EndPlace::Marked(_, places) if places.contains(vertex))
     }
 
     /// It is not this vertex. Returns whether it could be.
     fn exclude(&mut self, vertex: Vertex) -> bool {
         match &mut self.place {
-            Place::Marked(_, may_be) => may_be.get_mut(vertex.at()).is_some_and(std::mem::take),
+            EndPlace::Marked(_, places) => places.exclude(vertex),
             _ => false,
         }
     }

@@ -10,8 +10,8 @@ mod meeting;
 mod rounds;
 
 use super::{
-    Contradiction, CostOrder, Explorer, ExplorerInfo, FACING, InvalidStep, MapDart, MapWalk,
-    Mapped, MappingError, MappingEvent, MovableEvent, ObservedWorld, StepPurpose,
+    Contradiction, CostOrder, Explorer, ExplorerInfo, FACING, InvalidStep, MapWalk, Mapped,
+    MappingError, MappingEvent, MovableEvent, ObservedWorld, StepPurpose, candidates::Candidates,
     map_walk::has_walk, movable_markers::handle,
 };
 use crate::{
@@ -54,8 +54,7 @@ enum Scout {
 struct UnknownEnd {
     edge: Dart,
     degree: u32,
-    /// For each known vertex, whether it may be the place.
-    may_be: Vec<bool>,
+    may_be: Candidates,
     /// The place, once it is known.
     place: Option<Vertex>,
 }
@@ -161,7 +160,7 @@ impl Explorer for TeamRun {
     }
 
     fn purpose(&self, edge: Option<Dart>) -> StepPurpose {
-        edge.map_or(StepPurpose::Done, |edge| StepPurpose::Explore(MapDart::new(self.map(), edge)))
+        self.walk.purpose(edge)
     }
 
     /// With headings `3 n (n - 1) / 2 - 2 (n - 1) + (m - n + 1) (3 n - 2)`; without, `6 n - 7` for each loop. With two
@@ -220,8 +219,9 @@ impl TeamRun {
         let percept = self.send(scout, door, world)?;
         self.turn = (scout + 1) % self.scouts.len();
         let (degree, is_alone) = Self::seen_beyond(scout, percept)?;
-        let may_be = if is_alone { self.may_be(scout, edge, degree) } else { Vec::new() };
-        let candidates = may_be.iter().filter(|may_be| **may_be).count();
+        let may_be =
+            if is_alone { self.candidates_of(scout, edge, degree) } else { Candidates::default() };
+        let candidates = may_be.count();
         self.scouts[scout] = Scout::Beyond(UnknownEnd { edge, degree, may_be, place: None });
         self.followed.push(edge);
         let at_end = Percept { degree, sighting: percept.sighting };
@@ -266,30 +266,22 @@ impl TeamRun {
         }
     }
 
-    /// For each known vertex, whether it can be the unknown end of an edge. It looks like it, and has an unexplored dart,
-    /// besides this one. Without headings, in a world without loops and parallel edges, it is neither the known end nor
-    /// joined to it. Where another robot is, that one would see the scout.
-    fn may_be(&self, scout: usize, edge: Dart, degree: u32) -> Vec<bool> {
-        let map = self.map();
-        let known_end = map.vertex(edge);
-        let can_be = |vertex| {
-            let besides = u32::from(vertex == known_end);
-            map.degree(vertex) == degree && map.unexplored_count_at(vertex) > besides
-        };
-        let mut may_be: Vec<_> = map.vertices().map(can_be).collect();
+    /// The candidates for the place of a scout. Where another robot is, that one would see the scout.
+    fn candidates_of(&self, scout: usize, edge: Dart, degree: u32) -> Candidates {
+        let mut places = Candidates::of_end(self.map(), edge, degree);
         if !self.team.shows_heading() {
-            may_be[known_end.at()] = false;
-            for far in map.darts_of(known_end).filter_map(|dart| map.opposite(dart)) {
-                may_be[map.vertex(far).at()] = false;
-            }
+            places = places.in_simple_world(self.map(), edge);
         }
-        let others = (0..self.scouts.len()).filter(|other| *other != scout).map(TeamMember::Scout);
-        for other in [TeamMember::Explorer].into_iter().chain(others) {
-            if let Some(vertex) = self.place(other) {
-                may_be[vertex.at()] = false;
-            }
+        for vertex in self.others(scout).filter_map(|other| self.place(other)) {
+            places.exclude(vertex);
         }
-        may_be
+        places
+    }
+
+    /// The explorer, and the scouts besides this one.
+    fn others(&self, scout: usize) -> impl Iterator<Item = TeamMember> + use<> {
+        let scouts = (0..self.scouts.len()).filter(move |other| *other != scout);
+        [TeamMember::Explorer].into_iter().chain(scouts.map(TeamMember::Scout))
     }
 
     /// The vertex where a robot is, if that is known: the explorer, or one of the scouts.
@@ -332,13 +324,12 @@ impl TeamRun {
             return Ok(true);
         }
         let (mut place, mut entry) = (known, None);
-        let others = (0..self.scouts.len()).filter(|other| *other != scout).map(TeamMember::Scout);
-        for other in [TeamMember::Explorer].into_iter().chain(others) {
+        for other in self.others(scout) {
             let Some(vertex) = self.place(other) else { continue };
             let meeting = Meeting::of(scout, other, percept);
             if meeting.is_apart() {
                 if let Scout::Beyond(end) = &mut self.scouts[scout] {
-                    end.exclude(vertex);
+                    end.may_be.exclude(vertex);
                 }
                 continue;
             }
@@ -379,12 +370,8 @@ impl TeamRun {
     /// The explorer looks for the scouts at all known vertices where they can stand, in the order in which a depth-first
     /// walk of the shortest paths from it meets them. The places of scouts that it does not meet are new.
     fn search<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
-        let here = self.map().vertex(self.walk.robot);
-        let Self { walk: MapWalk { map, from_robot, .. }, .. } = self;
         let mut candidates = Vec::new();
-        from_robot.grow_from(map, here);
-        from_robot.grow_whole(map);
-        from_robot.preorder(map, &mut candidates);
+        self.walk.write_preorder(&mut candidates);
         for candidate in candidates {
             if self.is_candidate(candidate) {
                 self.look_for_scouts(candidate, world)?;
@@ -405,7 +392,7 @@ impl TeamRun {
     /// Whether a known vertex may be where a scout stands that is looked for.
     fn is_candidate(&self, vertex: Vertex) -> bool {
         self.scouts.iter().any(|scout| match scout {
-            Scout::Beyond(end) => end.place.is_none() && end.may_be.get(vertex.at()) == Some(&true),
+            Scout::Beyond(end) => end.place.is_none() && end.may_be.contains(vertex),
             Scout::At(_) => false,
         })
     }
@@ -561,15 +548,6 @@ impl Scout {
     /// Whether it stands at the unknown end of this edge.
     fn is_beyond(&self, dart: Dart) -> bool {
         matches!(self, Self::Beyond(end) if end.edge == dart)
-    }
-}
-
-impl UnknownEnd {
-    /// It is not this vertex.
-    fn exclude(&mut self, vertex: Vertex) {
-        if let Some(may_be) = self.may_be.get_mut(vertex.at()) {
-            *may_be = false;
-        }
     }
 }
 

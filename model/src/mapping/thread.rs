@@ -7,9 +7,9 @@
 //! drops the string's end there and follows the string until one is left.
 
 use super::{
-    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, Mapped,
-    MappingError, MappingEvent, MovableEvent, ObservedWorld, PartialMap, StepPurpose,
-    map_walk::has_walk, movable_markers::handle, partial_map::START,
+    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapWalk, Mapped, MappingError,
+    MappingEvent, MovableEvent, ObservedWorld, PartialMap, StepPurpose, map_walk::has_walk,
+    movable_markers::handle, partial_map::START,
 };
 use crate::{
     aid::{AidAction, AidKind, string::LaidString},
@@ -137,7 +137,7 @@ impl Explorer for ThreadRun {
     }
 
     fn purpose(&self, edge: Option<Dart>) -> StepPurpose {
-        edge.map_or(StepPurpose::Done, |edge| StepPurpose::Explore(MapDart::new(self.map(), edge)))
+        self.walk.purpose(edge)
     }
 
     /// `2 (n - 1) + 2 n (m - n + 1)`. The string is never longer than n edges.
@@ -234,8 +234,8 @@ impl ThreadRun {
         Ok(())
     }
 
-    /// Follows the string from where its end was dropped until one hypothesis is left. One of the ends is reached at
-    /// last, and how far it is tells the place.
+    /// Follows the string from where its end was dropped until one hypothesis is left. At the latest this is so at an end
+    /// of the string: the distance to it differs from place to place.
     fn follow_string<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
         let mut seen = self.walk.arrival;
         while self.hypotheses.len() > 1 {
