@@ -233,7 +233,7 @@ impl Robot for SimulatedRobot {
         self.marker = match (action, self.marker) {
             (AidAction::PickUp, None) => return Err(RobotError::Gripper { holds: true }),
             (AidAction::PickUp, Some(marker)) => {
-                let is_here = junction_at(&self.plan, pose.position) == Some(marker.vertex);
+                let is_here = junction_at(&self.plan, pose) == Some(marker.vertex);
                 if !is_here {
                     return Err(RobotError::NothingGripped);
                 }

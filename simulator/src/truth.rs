@@ -182,36 +182,31 @@ impl JunctionTruth {
 pub struct LyingMarker {
     /// The junction where it lies.
     pub vertex: Vertex,
-    /// Its centre.
-    pub position: [f64; 2],
+    pub centre_in_plan: Point2<f64>,
     /// That of its longer side.
     pub direction: Direction,
 }
-
-/// A robot is at a junction up to this distance from its turning point, in metres.
-pub const THERE: f64 = 0.5;
 
 impl LyingMarker {
     /// On the turning point of a dart's vertex, along the dart.
     pub fn along(plan: &FloorPlan, dart: Dart) -> Self {
         let vertex = plan.graph().vertex(dart);
-        let position = plan.junction(vertex).position;
-        Self { vertex, position, direction: plan.direction(dart) }
+        let centre_in_plan = plan.junction(vertex).position.into();
+        Self { vertex, centre_in_plan, direction: plan.direction(dart) }
     }
 
     /// Where a robot with this pose puts it down: below itself, along the axis of the plan that is nearest to its heading.
     /// `None` if the robot is at no junction.
     pub fn below(plan: &FloorPlan, pose: Pose) -> Option<Self> {
-        let vertex = junction_at(plan, pose.position)?;
-        Some(Self { vertex, position: pose.position, direction: nearest_direction(pose.heading) })
+        let (vertex, direction) = (junction_at(plan, pose)?, nearest_direction(pose.heading));
+        Some(Self { vertex, centre_in_plan: pose.position.into(), direction })
     }
 
     /// The same marker, farther in its direction, in metres.
     #[must_use]
     pub fn moved(self, metres: f64) -> Self {
-        let [east, north] = self.direction.vector();
-        let [x, y] = self.position;
-        Self { position: [x + metres * east, y + metres * north], ..self }
+        let way = metres * Vector2::from(self.direction.vector());
+        Self { centre_in_plan: self.centre_in_plan + way, ..self }
     }
 
     /// The marker as a robot at a pose sees it. Its door is known if there is a door behind the robot.
@@ -222,17 +217,17 @@ impl LyingMarker {
         let door = junction.doors.iter().position(is_it);
         let plan_from_robot = Isometry2::new(pose.position.into(), pose.heading);
         MarkerView {
-            position: plan_from_robot.inverse_transform_point(&self.position.into()).into(),
+            position: plan_from_robot.inverse_transform_point(&self.centre_in_plan).into(),
             axis: undirected(points),
             door: junction.shape.and(door).map(|door| Door(door as u32)),
         }
     }
 }
 
-/// The junction at a position; `None` if there is none.
-pub fn junction_at(plan: &FloorPlan, position: [f64; 2]) -> Option<Vertex> {
-    let off = |vertex: &Vertex| distance(plan.junction(*vertex).position, position);
-    nearest(plan.graph().vertices(), off).filter(|vertex| off(vertex) <= THERE)
+/// The junction where a robot with this pose is; `None` if it is at none.
+pub fn junction_at(plan: &FloorPlan, pose: Pose) -> Option<Vertex> {
+    let off = |vertex: &Vertex| distance(plan.junction(*vertex).position, pose.position);
+    nearest(plan.graph().vertices(), off).filter(|vertex| off(vertex) <= JUNCTION_WITHIN)
 }
 
 /// The direction that is nearest to a heading.

@@ -352,7 +352,7 @@ fn poster(colour: [f32; 3], [along, up]: [f32; 2]) -> [f32; 3] {
 fn rectangle(marker: &LyingMarker) -> Rectangle {
     let along = marker.direction.vector();
     let half = along.map(|along| if along == 0.0 { MARKER[1] } else { MARKER[0] } / 2.0);
-    Rectangle::centred(marker.position, half)
+    Rectangle::centred(marker.centre_in_plan.into(), half)
 }
 
 /// Height of the ceiling, in metres.
