@@ -15,7 +15,7 @@ use crate::{
     long_work::{Watcher, run_watched},
     own_marker::OwnMarker,
     percept::Percept,
-    world::{CoreWorld, named_aid},
+    world::{CoreWorld, check_seen, named_aid},
 };
 
 /// A robot's state: its pose, and the darts that place its marking aid, none for what it carries.
@@ -74,6 +74,9 @@ pub(crate) fn compare(
         own = Some(OwnMarker::new(marker.clone().unbind()));
         own.as_ref().map_or(NoMarker.into(), |own| AnyAid::Own(own))
     };
+    for graph in graphs {
+        check_seen(py, aid, graph)?;
+    }
     if sides.iter().any(|&(graph, facing)| has_more_states(graph, aid, facing, MOST_STATES)) {
         let text = format!("a world has more than {MOST_STATES} states of robot and marker");
         return Err(error(py, "SizeError", text));

@@ -17,7 +17,7 @@ use toposlam_model::{
 use crate::{
     error::{error, interrupted},
     long_work::{Watcher, run_watched},
-    world::CoreWorld,
+    world::{CoreWorld, check_seen},
 };
 
 /// A run that mapped its world.
@@ -102,6 +102,7 @@ pub(crate) fn explore(
         let text = format!("`{algorithm}` is not an algorithm; the algorithms are {names}");
         return Err(error(py, "UnknownAlgorithmError", text));
     };
+    check_seen(py, algorithm.aid(), &world.graph)?;
     if algorithm.needs_simple() && !world.graph.is_simple() {
         let text =
             format!("the algorithm {algorithm} needs a world without loops and parallel edges");

@@ -15,7 +15,7 @@ use toposlam_model::{
 use crate::{
     error::{error, guarded},
     percept::Percept,
-    world::{CoreWorld, named_aid},
+    world::{CoreWorld, check_seen, named_aid},
 };
 
 /// A robot that senses and moves in a world, and nothing else. It counts its moves.
@@ -54,6 +54,7 @@ impl Robot {
             }
             _ => (named_aid(py, &marker.extract::<String>()?)?, None),
         };
+        check_seen(py, marker, &graph)?;
         let world = GraphWorld::with_aid(&graph, marker, facing);
         let (state, sensed) = (world.state(), world.sensed());
         Ok(Self {

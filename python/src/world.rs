@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use pyo3::{prelude::*, types::PyBytes};
 use toposlam_draw::picture::{Placement, WorldPicture, png, side_by_side, svg};
 use toposlam_model::{
-    aid::{self, AidKind},
+    aid::{self, Aid, AidKind},
     embedded_graph::{Dart, EmbeddedGraph, GraphError},
     format::{
         dot,
@@ -14,6 +14,7 @@ use toposlam_model::{
         world_file::{self, WorldFileErrorKind},
     },
     isomorphism::{Bijection, canonical, code, discovery_order},
+    percept::DoorSet,
 };
 
 use crate::error::{error, guarded};
@@ -275,6 +276,16 @@ pub(crate) fn is_name(text: &str) -> bool {
 /// The marking aid with this name.
 pub(crate) fn named_aid(py: Python<'_>, name: &str) -> PyResult<AidKind> {
     aid::named(name).map_err(|unknown| error(py, "UnknownMarkerError", unknown))
+}
+
+/// Checks that an aid can be seen everywhere in a graph. Otherwise a run or a comparison is no evidence.
+pub(crate) fn check_seen(py: Python<'_>, aid: impl Aid, graph: &EmbeddedGraph) -> PyResult<()> {
+    if aid.is_seen_everywhere(graph) {
+        return Ok(());
+    }
+    let (name, most) = (aid.name(), DoorSet::MOST);
+    let text = format!("the world has a vertex with more than {most} doors, the most for {name}");
+    Err(error(py, "SizeError", text))
 }
 
 /// The graph of doors: degrees, and for each door, vertex by vertex, the other end of its edge.

@@ -74,3 +74,21 @@ def test_an_explorer_for_a_directional_marker_maps_with_one_that_can_be_carried(
     carried = ts.check(depth_first, marker="movable-directional", edges=3)
     assert fixed.verdict == "holds"
     assert [size.moves for size in fixed.sizes] == [size.moves for size in carried.sizes]
+
+
+def test_nothing_is_claimed_of_a_string_that_is_not_seen():
+    leaves = [f"leaf {number}" for number in range(33)]
+    star = ts.World({"hub": leaves, **{leaf: ["hub"] for leaf in leaves}}, start=("leaf 0", 0))
+    for call in (
+        lambda: star.robot("string-1"),
+        lambda: ts.compare(star, star, marker="string-1"),
+        lambda: ts.explore(star, algorithm="string"),
+    ):
+        with pytest.raises(errors.SizeError, match="more than 32 doors"):
+            call()
+    assert ts.explore(star, algorithm="team-2").map.is_isomorphic(star)
+
+
+def test_a_game_has_an_aid_with_few_states():
+    with pytest.raises(errors.UnknownMarkerError, match="no game has the aid `team-2`"):
+        ts.play(ts.World.load("worlds/shape-8.toml"), marker="team-2")

@@ -35,7 +35,8 @@ use super::{
     explorer::{ExplorerCommand, ExplorerOptions},
     input,
     mapping_marker::{
-        algorithm_for, check_worlds, is_directional, marker_kind, needs_simple, not_sufficient,
+        algorithm_for, check_seen, check_worlds, is_directional, marker_kind, needs_simple,
+        not_sufficient,
     },
     method_options::algorithms,
     output,
@@ -638,6 +639,8 @@ impl CheckArguments {
         };
         if self.explorer.explorer.is_none() {
             check_worlds(self.marker, path, &graphs)?;
+        } else {
+            check_seen(self.marker, path, &graphs)?;
         }
         let mut sizes: BTreeMap<usize, Vec<_>> = BTreeMap::new();
         for graph in graphs {

@@ -21,6 +21,7 @@ use super::{
     exit_codes::help_end,
     input,
     json::print_line,
+    mapping_marker::check_seen,
     marker_kinds, output,
     progress::Progress,
     text::{counted, print_columns, print_paragraph, vertices},
@@ -169,6 +170,9 @@ impl CompareArguments {
             }
             (Some(marker), _) => marker,
         };
+        for (path, world) in [&self.a, &self.b].into_iter().zip(worlds) {
+            check_seen(marker, path, [&world.graph])?;
+        }
         let one_pose = self.start.len() == 2;
         let progress = Progress::endless("comparing", "starts")?;
         let robots = RobotComparison::new(worlds, marker, one_pose, &progress);

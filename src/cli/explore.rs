@@ -24,7 +24,7 @@ use super::{
     exit_codes::help_end,
     explorer::ExplorerOptions,
     input,
-    mapping_marker::{algorithm_for, check_worlds, is_directional, marker_kind},
+    mapping_marker::{algorithm_for, check_seen, check_worlds, is_directional, marker_kind},
     method_options::{AuditOption, algorithms},
     output,
     progress::StopSignal,
@@ -165,6 +165,7 @@ impl ExploreArguments {
         let world = input::read_world(&self.world)?;
         if let Some(command) = &self.explorer.explorer {
             self.explorer.check_one_run()?;
+            check_seen(self.marker, &self.world, [&world.graph])?;
             let facing = input::start_of(&world, self.start.as_deref())?;
             self.check_outputs(&world)?;
             return self.explore_by(command, &world, facing, out);

@@ -3,10 +3,11 @@
 use std::{fmt::Display, path::Path};
 
 use toposlam_model::{
-    aid::{self, AidKind},
+    aid::{self, Aid, AidKind},
     embedded_graph::EmbeddedGraph,
     mapping::MappingAlgorithm,
     marker::Directional,
+    percept::DoorSet,
 };
 
 use super::CliError;
@@ -55,15 +56,38 @@ pub(super) fn algorithm_for(
     Ok(found)
 }
 
+/// Checks that the aid can be seen everywhere in the worlds of a file. Otherwise a run or a comparison is no evidence.
+///
+/// # Errors
+/// Returns an error that names the first world where it cannot.
+pub(super) fn check_seen<'g>(
+    aid: AidKind,
+    path: &Path,
+    graphs: impl IntoIterator<Item = &'g EmbeddedGraph>,
+) -> Result<(), CliError> {
+    match graphs.into_iter().position(|graph| !aid.is_seen_everywhere(graph)) {
+        None => Ok(()),
+        Some(index) => {
+            let (name, most, number) = (aid.name(), DoorSet::MOST, index + 1);
+            let cause = format!(
+                "world {number} has a vertex with more than {most} doors, which is the most for the marking aid {name}"
+            );
+            Err(CliError::in_file(path, cause))
+        }
+    }
+}
+
 /// Checks that the aid suffices for every world of a file.
 ///
 /// # Errors
-/// Returns an error if it suffices only for worlds without loops and parallel edges, and a world has them.
+/// Returns an error if it suffices only for worlds without loops and parallel edges, and a world has them; or if it
+/// cannot be seen everywhere.
 pub(super) fn check_worlds(
     marker: AidKind,
     path: &Path,
     graphs: &[EmbeddedGraph],
 ) -> Result<(), CliError> {
+    check_seen(marker, path, graphs)?;
     match graphs.iter().position(|graph| !graph.is_simple()) {
         Some(index) if needs_simple(marker) => {
             let world = format!("world {}", index + 1);

@@ -2,12 +2,9 @@
 
 use std::path::Path;
 
-use toposlam_model::{
-    aid::{Aid, AidKind},
-    format::named_world::NamedWorld,
-};
+use toposlam_model::{aid::AidKind, format::named_world::NamedWorld};
 
-use super::{CliError, output, text::grouped};
+use super::{CliError, mapping_marker::check_seen, output, text::grouped};
 use crate::page::{WalkPage, page};
 
 /// The most darts of a world on a page.
@@ -29,12 +26,7 @@ pub(super) fn check_world(
     world: &NamedWorld,
     marker: AidKind,
 ) -> Result<(), CliError> {
-    if !marker.is_seen_everywhere(&world.graph) {
-        let aid = marker.name();
-        let cause =
-            format!("a page shows no {aid} in {}: a vertex has too many doors for it", world.name);
-        return Err(CliError::in_file(path, cause));
-    }
+    check_seen(marker, path, [&world.graph])?;
     if world.graph.dart_count() <= MOST_DARTS {
         return Ok(());
     }
