@@ -40,7 +40,10 @@ impl<'r> LogHead<'r> {
     }
 
     /// The marker of the robot: without a record, a directional one.
-    pub(crate) fn marker(self) -> Result<MarkerKind, RecordedMarkerError> {
+    ///
+    /// # Errors
+    /// Returns an error if the recorded name is no fixed marker's.
+    pub fn marker(self) -> Result<MarkerKind, RecordedMarkerError> {
         let Some(name) = self.marker_name() else { return Ok(Directional) };
         match aid::named(name) {
             Ok(aid) if aid.moves() => Err(RecordedMarkerError::Moves(aid)),

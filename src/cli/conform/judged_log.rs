@@ -87,7 +87,7 @@ impl ConformArguments {
 /// Why a log could not be checked, with the options that help.
 fn not_checked(path: &Path, opened: &OpenLog, error: CheckError) -> CliError {
     match error {
-        CheckError::Marker(error) => CliError::at("the log", error),
+        CheckError::Marker(error) => CliError::in_file(path, error),
         error @ CheckError::Algorithm(_) => {
             CliError::in_file(path, format!("{error}; use --algorithm"))
         }

@@ -7,7 +7,7 @@
 use std::{io::Write, path::Path, time::Instant};
 
 use serde_json::{Value, json};
-use toposlam_conform::LogHead;
+use toposlam_conform::{LogHead, RecordedMarkerError};
 use toposlam_logs::topic_map::Role;
 use toposlam_model::{
     embedded_graph::EmbeddedGraph,
@@ -38,6 +38,10 @@ impl ConformArguments {
         let opened = OpenLog::new(log, &self.sources)?;
         let begun = Instant::now();
         let head = LogHead(opened.run.as_ref());
+        // A robot that is driven again has no gripper.
+        if let Err(moves @ RecordedMarkerError::Moves(_)) = head.marker() {
+            return Err(CliError::in_file(log, moves));
+        }
         let settings = head.settings(self.algorithm);
         let RecordedSettings { method, budget, is_resumed, dart_bound, .. } =
             settings.map_err(|head| {
