@@ -5,11 +5,11 @@
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
 use toposlam_conform::{
-    CheckedEvent, ConformConfig, EventSource, Evidence, ExtractConfig, KnownWorld, Quirks,
-    RunDriver, RunEvents, extract, judge,
+    CheckedEvent, CheckedKind, ConformConfig, EventSource, Evidence, ExtractConfig, KnownWorld,
+    Quirks, RunDriver, RunEvents, extract, judge,
 };
 use toposlam_logs::{
-    arrival_message, door_message,
+    action_message, arrival_message, door_message,
     messages::{self, ProjectMessage, Stamp},
     reader::Log,
     record::Arrival,
@@ -17,6 +17,7 @@ use toposlam_logs::{
     writer::LogWriter,
 };
 use toposlam_model::{
+    aid::AidKind,
     embedded_graph::Dart,
     enumerate::Class,
     floor_plan::FloorPlan,
@@ -52,10 +53,10 @@ fn trace(plan: &FloorPlan) -> Trace {
 /// A run of Algorithm 1 in a known world, from any start.
 fn in_known_world(plan: &FloorPlan) -> ConformConfig {
     let graph = plan.graph().clone();
-    let states = anywhere(&graph, &Directional);
+    let states = anywhere(&graph, &AidKind::from(Directional));
     ConformConfig {
         world: Some(KnownWorld { graph, states }),
-        marker: Directional,
+        aid: Directional.into(),
         driver: RunDriver::from(MappingAlgorithm::Algorithm1),
         budget: RunBudget::default(),
         search: SEARCH,
@@ -72,11 +73,12 @@ const SEARCH: WorldSearch =
 fn a_run(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
     let trace = trace(&plan);
-    let event = |event: TraceEvent| CheckedEvent {
+    let event = |(_, event): (_, TraceEvent)| CheckedEvent {
         source: EventSource { time: event.id as u64, ..EventSource::default() },
         kind: match event.kind {
             TraceEventKind::Percept(percept) => percept.into(),
             TraceEventKind::Door(door) => door.into(),
+            TraceEventKind::Action(action) => CheckedKind::Action { number: None, action },
         },
     };
     let events = RunEvents { events: trace.events().map(event).collect(), ..RunEvents::default() };
@@ -90,7 +92,7 @@ fn ten_thousand_events(bencher: divan::Bencher) {
     let plan = random_plan_with(1, 100).unwrap();
     let trace = trace(&plan).up_to(9_999);
     let mut log = LogWriter::new(Vec::new()).unwrap();
-    for event in trace.events() {
+    for (_, event) in trace.events() {
         let (time, moves) = (event.id as u64 * 1_000_000_000, event.id as u32 / 2);
         let stamp = Stamp::from_nanoseconds(time);
         match event.kind {
@@ -103,6 +105,10 @@ fn ten_thousand_events(bencher: divan::Bencher) {
             TraceEventKind::Door(door) => {
                 let message = door_message(stamp, Some(moves + 1), door);
                 log.write(messages::Door::TOPIC, time, &message).unwrap();
+            }
+            TraceEventKind::Action(action) => {
+                let message = action_message(stamp, Some(moves), action);
+                log.write(messages::Action::TOPIC, time, &message).unwrap();
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use toposlam_logs::record::RunEnding;
 use toposlam_model::{
+    aid::Action,
     percept::{Door, WalkEvent},
     trace::{AlgorithmMatch, AllowedStep, Departure, MatchEnd, StepPurpose, Trace},
 };
@@ -36,8 +37,10 @@ pub(super) fn within_budget(
         if number == last && turned_back {
             let could_go_on = moves_alone == budget
                 && departed.is_some_and(|departure| {
-                    let mut doors = departure.allowed.iter().filter_map(|allowed| allowed.door);
-                    doors.all(|door| allowance.forbids(door, spent).is_none())
+                    departure.allowed.iter().all(|allowed| match allowed.action {
+                        Some(Action::Take(door)) => allowance.forbids(door, spent).is_none(),
+                        _ => true,
+                    })
                 });
             return if could_go_on {
                 followed
@@ -95,7 +98,8 @@ fn departing(
     number: usize,
     door: Option<Door>,
 ) -> AlgorithmMatch {
-    let allowed = vec![AllowedStep { door, purpose: StepPurpose::TurnBack }];
+    let allowed =
+        vec![AllowedStep { action: door.map(Action::Take), purpose: StepPurpose::TurnBack }];
     let event = trace.door_event(number);
     let departure = Departure { algorithm: followed.algorithm, event, allowed };
     AlgorithmMatch { reached: MatchEnd::Departure(departure), ..followed }

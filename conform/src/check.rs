@@ -8,11 +8,12 @@ use toposlam_logs::{
     topic_map::{MarkerPlace, Role, TopicMap},
 };
 use toposlam_model::{
+    aid::{AidKind, UnknownAid, markers::MOVABLE, pointer::MovablePointer},
     enumerate::Watch,
     folding::WorldSearch,
     format::named_world::{NamedWorld, StartError},
     mapping::MappingAlgorithm,
-    marker::{Directional, MarkerKind, NoMarker},
+    marker::{Directional, MarkerKind, NoMarker, Undirected},
 };
 use toposlam_robot::run_settings::RecordedSettings;
 use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
@@ -23,7 +24,7 @@ use super::{
     frame_content::FrameContents,
     judgement::{JudgeError, Judgement, judge},
     known_world::{Known, KnownWorld, MarkerStart},
-    log_head::{LogHead, MarkerNotShown, RecordedMarkerError},
+    log_head::{LogHead, MarkerNotShown},
     marked_visits::{AddedMarker, MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
     possible_visits::PossibleVisits,
     quirks::Quirks,
@@ -47,8 +48,8 @@ pub struct LogCheck<'w> {
     pub laser: LaserParams,
     pub world: Option<&'w NamedWorld>,
     pub start: RobotStart<'w>,
-    /// The robot's marker; without one, that of the log, or else a directional one.
-    pub marker: Option<MarkerKind>,
+    /// The robot's marking aid; without one, that of the log, or else a directional marker.
+    pub aid: Option<AidKind>,
     /// Whether a marker is assumed that is not in the log: at the place of the topic map, or else at the first
     /// junction.
     pub assumes_marker: bool,
@@ -97,7 +98,11 @@ pub struct CheckedLog {
 #[derive(Debug, Error)]
 pub enum CheckError {
     #[error(transparent)]
-    Marker(#[from] RecordedMarkerError),
+    Aid(#[from] UnknownAid),
+    #[error("logs do not record what a robot with `{}` sees of it", .aid.name())]
+    SightingsNotRecorded { aid: AidKind },
+    #[error("its events are inferred, and only recorded ones show what a robot does with `{}`", .aid.name())]
+    InferredWithMoving { aid: AidKind },
     #[error("its algorithm `{0}` is unknown")]
     Algorithm(String),
     #[error(transparent)]
@@ -136,6 +141,12 @@ pub enum MarkerPlaceError {
     Assumed(MarkedVisitsError),
 }
 
+/// The marking aids of robots whose logs can be checked: logs record what such robots see.
+pub fn checked_aids() -> impl Iterator<Item = AidKind> {
+    let fixed = [Directional, Undirected, NoMarker].map(AidKind::from);
+    fixed.into_iter().chain([MOVABLE.into(), AidKind::Pointer(MovablePointer)])
+}
+
 impl LogCheck<'_> {
     /// Reads and judges a log. `on_events` is called between the two.
     ///
@@ -149,9 +160,18 @@ impl LogCheck<'_> {
     ) -> Result<CheckedLog, CheckError> {
         let LogSource { log, topics, head, sensor } = *source;
         let head = LogHead(head);
-        let marker = self.marker.map_or_else(|| head.marker(), Ok)?;
+        let aid = self.aid.map_or_else(|| head.aid(), Ok)?;
+        if !checked_aids().any(|it| it == aid) && aid.moves() {
+            return Err(CheckError::SightingsNotRecorded { aid });
+        }
+        if aid.moves() && self.evidence != Evidence::Recorded {
+            return Err(CheckError::InferredWithMoving { aid });
+        }
         let (settings, driver) = match self.doors {
             DoorChooser::Algorithm(algorithm) => {
+                // There is one algorithm for each aid that moves.
+                let of_aid = || MappingAlgorithm::all().find(|it| aid.moves() && it.aid() == aid);
+                let algorithm = algorithm.or_else(of_aid);
                 let settings = head.settings(algorithm).map_err(CheckError::Algorithm)?;
                 (settings, RunDriver::from(settings))
             }
@@ -159,27 +179,30 @@ impl LogCheck<'_> {
         };
         let algorithm = settings.method.algorithm();
         let marker_start = self.marker_start(topics)?;
-        let (known, world) = self.known((marker, marker_start), head, algorithm)?.unzip();
+        let (known, world) = self.known((aid, marker_start), head, algorithm)?.unzip();
         let config = ConformConfig {
             world,
-            marker,
+            aid,
             driver,
             budget: settings.budget,
             search: self.search,
             dart_bound: self.max_darts.unwrap_or(settings.dart_bound),
         };
-        let marked = marker != NoMarker;
+        let marked = aid != AidKind::Fixed(NoMarker);
         // Whether a corridor bends enough for a corner does not show by driving there.
         let driven = config.world.is_some() && !self.laser.corner.corners;
         let extraction =
             ExtractConfig { evidence: self.evidence, sensor, marked, laser: self.laser, driven };
         let mut extracted = extract(log, topics, &extraction, watch)?;
-        let added = self.add_marker(topics, &mut extracted, marker)?;
-        if self.marker.is_none() && driver != RunDriver::Anyone {
+        let added = match aid.fixed() {
+            Some(marker) => self.add_marker(topics, &mut extracted, marker)?,
+            None => None,
+        };
+        if self.aid.is_none() && driver != RunDriver::Anyone {
             head.check_marker(&extracted.events, algorithm)?;
         }
         let mut events = extracted.events.clone();
-        events.complete_sightings(marker).map_err(|error| CheckError::Judge(error.into()))?;
+        events.complete_sightings(aid).map_err(|error| CheckError::Judge(error.into()))?;
         let complete = events.clone();
         // A robot that no algorithm drives may turn back between junctions.
         if driver == RunDriver::Anyone {
@@ -225,7 +248,7 @@ impl LogCheck<'_> {
     /// The known world with the robot's start, and as it is compared.
     fn known(
         &self,
-        marker: (MarkerKind, MarkerStart),
+        aid: (AidKind, MarkerStart),
         head: LogHead,
         algorithm: MappingAlgorithm,
     ) -> Result<Option<(Known, KnownWorld)>, CheckError> {
@@ -238,7 +261,7 @@ impl LogCheck<'_> {
             RobotStart::Anywhere => None,
             RobotStart::At(start) => Some(world.start_from_text(start)?),
         };
-        let known = Known::new(world, start, marker, algorithm);
+        let known = Known::new(world, start, aid, algorithm);
         known.ok_or(CheckError::TooManyStates).map(Some)
     }
 

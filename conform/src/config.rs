@@ -1,9 +1,9 @@
 //! What a run is checked against.
 
 use toposlam_model::{
+    aid::AidKind,
     folding::WorldSearch,
     mapping::{MappingAlgorithm, MappingMethod},
-    marker::MarkerKind,
     trace::{AlgorithmMatch, Trace, match_algorithm, match_audited, match_recovering},
 };
 use toposlam_robot::{budget::RunBudget, run_settings::RecordedSettings};
@@ -13,7 +13,7 @@ use super::{budget_check::within_budget, events::RunEvents, known_world::KnownWo
 #[derive(Clone, Debug)]
 pub struct ConformConfig {
     pub world: Option<KnownWorld>,
-    pub marker: MarkerKind,
+    pub aid: AidKind,
     pub driver: RunDriver,
     /// What the robot might spend.
     pub budget: RunBudget,

@@ -2,6 +2,7 @@
 
 use toposlam_logs::record::{Arrival, RunEnding};
 use toposlam_model::{
+    aid::{Action, AidKind},
     driving::visit::JunctionShape,
     embedded_graph::EmbeddedGraph,
     isomorphism::code,
@@ -48,6 +49,13 @@ impl RunEvents {
                         fault(DivergenceCause::LeftBetweenDoors { off });
                     }
                 }
+                CheckedKind::Action { number, action } => {
+                    if let Some(recorded) = number.filter(|&number| number != moves) {
+                        fault(DivergenceCause::Number { expected: moves, recorded });
+                    }
+                    // A robot of a team makes the move.
+                    moves += Action::Do(*action).moves() as u32;
+                }
                 CheckedKind::LeftBetweenDoors { off } => {
                     fault(DivergenceCause::LeftBetweenDoors { off: *off });
                 }
@@ -75,7 +83,7 @@ impl RunEvents {
     pub(super) fn false_ending(
         &self,
         followed: &AlgorithmMatch,
-        known: Option<&KnownWorld>,
+        (known, aid): (Option<&KnownWorld>, AidKind),
     ) -> Vec<DivergenceCause> {
         let map = followed.run.map();
         let mut faults = Vec::new();
@@ -89,7 +97,7 @@ impl RunEvents {
                 if recorded.is_some_and(|recorded| recorded != Some(code_of(graph))) {
                     faults.push(DivergenceCause::Map { algorithm: followed.algorithm });
                 }
-                if known.is_some_and(|known| !known.has(graph)) {
+                if known.is_some_and(|known| !known.has(graph, aid)) {
                     faults.push(DivergenceCause::WrongMap);
                 }
             }
@@ -109,7 +117,8 @@ impl RunEvents {
 
     /// The recorded number of moves, if it is wrong. The door by which a robot left before it got lost is no move.
     pub(super) fn false_moves(&self, trace: &Trace) -> Option<DivergenceCause> {
-        let made = trace.percepts().len() - 1 - trace.lost().len();
+        let sent = trace.actions().iter().map(|it| Action::Do(it.action).moves()).sum::<u64>();
+        let made = trace.percepts().len() - 1 - trace.lost().len() + sent as usize;
         let recorded = self.end.as_ref()?.moves;
         (made as u64 != recorded).then_some(DivergenceCause::Moves { made, recorded })
     }

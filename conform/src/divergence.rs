@@ -5,8 +5,10 @@ use std::{f64::consts::FRAC_PI_6, fmt};
 use serde::Serialize;
 use thiserror::Error;
 use toposlam_model::{
+    aid::{AidKind, Places},
     counts::counted,
     mapping::MappingAlgorithm,
+    marker::Directional,
     measurement::ContradictoryMeasurement,
     trace::{Departure, Misfit, TraceEvent, TraceEventKind, TraceOrderError},
 };
@@ -111,7 +113,7 @@ pub enum DivergenceCause {
         1 => "it does not fit the known world".to_owned(),
         poses => format!("it fits none of the {poses} candidate poses in the known world"),
     })]
-    World(Misfit),
+    World(Misfit<Places>),
     #[error("the known world fits no choice of what was driven or seen to end up to here")]
     Driven,
     #[error("no world of any size explains the log up to here: {why}")]
@@ -142,9 +144,10 @@ impl DivergenceCause {
 
     fn name_and_fault(&self) -> (&'static str, FaultClass) {
         use FaultClass::{Algorithm, Log, Motion, Perception};
-        let by_kind = |event: &TraceEvent, percept, door| match event.kind {
+        let by_kind = |event: &TraceEvent, percept, door, action| match event.kind {
             TraceEventKind::Percept(_) => (percept, Perception),
             TraceEventKind::Door(_) => (door, Algorithm),
+            TraceEventKind::Action(_) => (action, Algorithm),
         };
         match self {
             Self::NotInTurn(_) => ("not-in-turn", Log),
@@ -160,9 +163,13 @@ impl DivergenceCause {
             Self::Return { .. } => ("return", Perception),
             Self::Undecided(_) => ("undecided", Perception),
             Self::Driven => ("driven", Perception),
-            Self::World(misfit) => by_kind(&misfit.event, "percept", "no-such-door"),
-            Self::NoWorld { event, .. } => by_kind(event, "no-world", "no-world"),
-            Self::Algorithm(departure) => by_kind(&departure.event, "contradiction", "door"),
+            Self::World(misfit) => {
+                by_kind(&misfit.event, "percept", "no-such-door", "impossible-action")
+            }
+            Self::NoWorld { event, .. } => by_kind(event, "no-world", "no-world", "no-world"),
+            Self::Algorithm(departure) => {
+                by_kind(&departure.event, "contradiction", "door", "action")
+            }
             Self::Unfinished { .. } => ("unfinished", Algorithm),
             Self::Map { .. } => ("map", Algorithm),
             Self::WrongMap => ("wrong-map", Algorithm),
@@ -172,7 +179,7 @@ impl DivergenceCause {
 }
 
 /// The names of all causes.
-pub(super) const NAMES: [&str; 20] = [
+pub(super) const NAMES: [&str; 22] = [
     "not-in-turn",
     "number",
     "form",
@@ -186,9 +193,11 @@ pub(super) const NAMES: [&str; 20] = [
     "driven",
     "percept",
     "no-such-door",
+    "impossible-action",
     "no-world",
     "contradiction",
     "door",
+    "action",
     "unfinished",
     "map",
     "wrong-map",
@@ -196,16 +205,25 @@ pub(super) const NAMES: [&str; 20] = [
 ];
 
 /// Why no run of an algorithm has an event.
-fn departed(departure: &Departure) -> &'static str {
+fn departed(departure: &Departure) -> String {
+    let algorithm = departure.algorithm.in_words();
     match (departure.event.kind, departure.algorithm) {
         (TraceEventKind::Percept(_), _) if departure.event.id == 0 => {
-            "a run begins where the marker lies, directed along the entry door"
+            let aid = departure.algorithm.aid();
+            if aid == AidKind::Fixed(Directional) {
+                "a run begins where the marker lies, directed along the entry door".to_owned()
+            } else {
+                format!("a run begins where the robot has all of its marking aid, `{}`", aid.name())
+            }
         }
-        (TraceEventKind::Percept(_), _) => "this percept contradicts the percepts before it",
+        (TraceEventKind::Percept(_), _) => {
+            "this percept contradicts the percepts before it".to_owned()
+        }
         (TraceEventKind::Door(_), MappingAlgorithm::Algorithm1) => {
-            "no run of Algorithm 1 takes this door here"
+            "no run of Algorithm 1 takes this door here".to_owned()
         }
-        (TraceEventKind::Door(_), _) => "the folding explorer does not take this door here",
+        (TraceEventKind::Door(_), _) => format!("{algorithm} does not take this door here"),
+        (TraceEventKind::Action(_), _) => format!("{algorithm} does not do this here"),
     }
 }
 

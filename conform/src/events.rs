@@ -4,8 +4,9 @@
 use thiserror::Error;
 use toposlam_logs::record::{Arrival, EventId, MapRecord, RunEnd};
 use toposlam_model::{
+    aid::{AidAction, AidKind, markers::MOVABLE, pointer::MovablePointer},
     mapping::ArrivalMeasurement,
-    marker::{Directional, MarkerKind, NoMarker, Undirected},
+    marker::{Directional, NoMarker, Undirected},
     measurement::{HallwayMeasurement, MeasurementNoise},
     percept::{Door, Percept, Sighting},
     trace::{RecordedVisit, Trace, TraceEvent, TraceEventKind, TraceOrderError},
@@ -46,6 +47,12 @@ pub enum CheckedKind {
         /// The angle between the door and the direction in which the robot drove by odometry, in radians;
         /// `None` if it is not known.
         off: Option<f64>,
+    },
+    /// The robot did something with its marking aid where it stood.
+    Action {
+        /// After how many moves by the log.
+        number: Option<u32>,
+        action: AidAction,
     },
     /// The robot left a junction in a direction without a door.
     LeftBetweenDoors {
@@ -132,7 +139,8 @@ impl CheckedEvent {
     pub(crate) fn number_mut(&mut self) -> Option<&mut u32> {
         match &mut self.kind {
             CheckedKind::Arrival { arrival: Arrival { number, .. }, .. }
-            | CheckedKind::Door { number, .. } => number.as_mut(),
+            | CheckedKind::Door { number, .. }
+            | CheckedKind::Action { number, .. } => number.as_mut(),
             _ => None,
         }
     }
@@ -145,9 +153,10 @@ impl RunEvents {
 
     /// Completes the arrivals that do not record whether the marker was seen: without a marker, none was. A door
     /// along which an undirected marker points is left out.
-    pub(crate) fn complete_sightings(&mut self, marker: MarkerKind) -> Result<(), SightingError> {
-        let [is_none, is_directional, is_undirected] =
-            [NoMarker, Directional, Undirected].map(|kind| marker == kind);
+    pub(crate) fn complete_sightings(&mut self, aid: AidKind) -> Result<(), SightingError> {
+        let is_none = aid == NoMarker.into();
+        let is_undirected = [Undirected.into(), MOVABLE.into()].contains(&aid);
+        let is_directional = [Directional.into(), AidKind::Pointer(MovablePointer)].contains(&aid);
         for arrival in self.arrivals_mut() {
             match arrival.sighting {
                 None if is_none => arrival.sighting = Some(Sighting::Nothing),
@@ -168,7 +177,15 @@ impl RunEvents {
         sightings.any(|sighting| sighting != Some(Sighting::Nothing))
     }
 
-    /// The trace of the arrivals and doors. The id of an event is its index here. An arrival that does not
+    /// What the robot first did with its marking aid, and its index.
+    pub(crate) fn first_action(&self) -> Option<(usize, AidAction)> {
+        self.events.iter().enumerate().find_map(|(index, event)| match event.kind {
+            CheckedKind::Action { action, .. } => Some((index, action)),
+            _ => None,
+        })
+    }
+
+    /// The trace of the arrivals, actions and doors. The id of an event is its index here. An arrival that does not
     /// record whether the marker was seen counts as one without it. The error is the first event that is out of turn.
     pub(crate) fn trace(&self) -> Result<Trace, TraceOrderError> {
         let event = |(id, event): (usize, &CheckedEvent)| {
@@ -178,6 +195,7 @@ impl RunEvents {
                     TraceEventKind::Percept(Percept { degree: *degree, sighting })
                 }
                 CheckedKind::Door { door, .. } => TraceEventKind::Door(*door),
+                CheckedKind::Action { action, .. } => TraceEventKind::Action(*action),
                 _ => return None,
             };
             Some(TraceEvent { id, kind })

@@ -481,7 +481,10 @@ impl<W: Watch> Extraction<'_, W> {
             }
             Content::Hypothesis(_) => return Ok(()),
         };
-        let is_recorded = matches!(kind, EventKind::Arrival(_) | EventKind::Door { .. });
+        let is_recorded = matches!(
+            kind,
+            EventKind::Arrival(_) | EventKind::Door { .. } | EventKind::Action { .. }
+        );
         if is_recorded && self.run.evidence == Evidence::Recorded {
             let before = std::mem::replace(&mut self.last, stamp);
             OutOfOrder::check(before, stamp)
@@ -516,7 +519,7 @@ impl<W: Watch> Extraction<'_, W> {
                     self.look()?;
                 }
             }
-            EventKind::Action { action, .. } => {
+            EventKind::Action { action, .. } if self.run.evidence != Evidence::Recorded => {
                 return Err(ExtractError::Action { message: id.0, action });
             }
             EventKind::End(end) => self.run.events.end = Some(end),

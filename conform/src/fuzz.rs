@@ -136,7 +136,7 @@ fn judge_run(log: &Log, mapping: &TopicMap) {
     };
     let by = |driver: RunDriver, marker: MarkerKind| ConformConfig {
         world: None,
-        marker,
+        aid: marker.into(),
         driver,
         budget: RunBudget::default(),
         search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100 },

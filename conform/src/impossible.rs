@@ -3,9 +3,10 @@
 
 use thiserror::Error;
 use toposlam_model::{
+    aid::AidKind,
     enumerate::Class,
     folding::{ContradictionReason, FoldError, FoldedTrail, TrailError, fold},
-    marker::{Directional, MarkerKind, NoMarker, Undirected},
+    marker::{Directional, NoMarker, Undirected},
     percept::{Percept, Sighting, WalkEvent},
     trace::Trace,
 };
@@ -62,13 +63,14 @@ pub(crate) struct FoldedTrace {
 }
 
 impl FoldedTrace {
-    /// Folds the trace of a robot with the directional or an undirected marker or without one; for other markers
+    /// Folds the trace of a robot with the directional or an undirected marker or without one; for other aids
     /// nothing is decided. That an undirected marker lies at one vertex is not compared here.
     ///
     /// Whether some world of the class explains the trace is exact, except that of a planar world only the
     /// degrees and the edges are compared here.
-    pub(crate) fn new(trace: &Trace, marker: MarkerKind, class: Class) -> Self {
-        if ![Directional, Undirected, NoMarker].contains(&marker) {
+    pub(crate) fn new(trace: &Trace, aid: AidKind, class: Class) -> Self {
+        let folds = [Directional, Undirected, NoMarker].map(AidKind::Fixed);
+        if !folds.contains(&aid) {
             return Self { trail: None, impossible: None };
         }
         let folded = trace.before_relocation();
@@ -83,7 +85,7 @@ impl FoldedTrace {
             let moves = trace.percepts().iter().position(is)?;
             Some((WalkEvent::Percept(moves).index(), why))
         };
-        let is_unmarked = marker == NoMarker;
+        let is_unmarked = aid == AidKind::Fixed(NoMarker);
         let marked = |percept: &Percept| is_unmarked && percept.sighting != Sighting::Nothing;
         let crowded = |percept: &Percept| percept.degree > class.max_degree();
         let marked = first(&marked, Impossibility::Marker);

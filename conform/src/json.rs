@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer, ser::SerializeMap};
 use toposlam_model::{
+    aid::Action,
     percept::Percept,
     trace::{AllowedStep, MisfitReason},
 };
@@ -108,12 +109,14 @@ impl ConformReports {
     }
 }
 
-/// What is perceived, or the door that is taken.
+/// What is perceived, or the door that is taken, or what is done with the marking aid.
 #[derive(Default, Serialize)]
 struct Step {
     degree: Option<u32>,
     marker: Option<MarkerSeen>,
     door: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    action: Option<String>,
 }
 
 impl CheckedKind {
@@ -121,9 +124,19 @@ impl CheckedKind {
         match self {
             Self::Arrival { .. } => "percept",
             Self::Door { .. } => "door",
+            Self::Action { .. } => "action",
             Self::LeftBetweenDoors { .. } => "aside",
             Self::TurnedBack => "turned-back",
             Self::Undecided(_) => "undecided",
+        }
+    }
+}
+
+impl From<Action> for Step {
+    fn from(action: Action) -> Self {
+        match action {
+            Action::Take(door) => Self { door: Some(door.0), ..Self::default() },
+            Action::Do(action) => Self { action: Some(action.to_string()), ..Self::default() },
         }
     }
 }
@@ -140,9 +153,10 @@ impl Serialize for CheckedKind {
             Self::Arrival { arrival, .. } => Step {
                 degree: Some(arrival.degree),
                 marker: arrival.sighting.and_then(MarkerSeen::from_sighting),
-                door: None,
+                ..Step::default()
             },
-            Self::Door { door, .. } => Step { door: Some(door.0), ..Step::default() },
+            Self::Door { door, .. } => Step::from(Action::Take(*door)),
+            Self::Action { action, .. } => Step::from(Action::Do(*action)),
             _ => Step::default(),
         };
         Fields { what: self.name(), step }.serialize(serializer)
@@ -161,8 +175,8 @@ impl Serialize for Allowed {
             purpose: Option<String>,
         }
         let fields = match self {
-            Self::Step(AllowedStep { door, purpose }) => Fields {
-                step: Step { door: door.map(|door| door.0), ..Step::default() },
+            Self::Step(AllowedStep { action, purpose }) => Fields {
+                step: action.map(Step::from).unwrap_or_default(),
                 purpose: Some(purpose.to_string()),
                 ..Fields::default()
             },
@@ -170,9 +184,10 @@ impl Serialize for Allowed {
                 let (step, doors) = match *why {
                     MisfitReason::Percept { expected: Percept { degree, sighting } } => {
                         let marker = MarkerSeen::from_sighting(sighting);
-                        (Step { degree: Some(degree), marker, door: None }, None)
+                        (Step { degree: Some(degree), marker, ..Step::default() }, None)
                     }
                     MisfitReason::NoSuchDoor { degree } => (Step::default(), Some(degree)),
+                    MisfitReason::Refused(_) => (Step::default(), None),
                 };
                 let (vertex, from) = (Some(&*pose.vertex), Some(&*pose.from));
                 Fields { step, vertex, from, doors, purpose: None }

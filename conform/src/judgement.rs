@@ -7,11 +7,13 @@ use serde::Serialize;
 use thiserror::Error;
 use toposlam_logs::record::Arrival;
 use toposlam_model::{
+    aid::{Aid, AidAction, AidKind, Places, State},
     driving::visit::JunctionShape,
+    embedded_graph::EmbeddedGraph,
     enumerate::Watch,
     folding::{FoldedTrail, MarkedTrails, SearchLimit, SmallestWorld, smallest_world},
-    mapping::MappingAlgorithm,
-    marker::{Directional, Undirected},
+    mapping::{FACING, MappingAlgorithm},
+    marker::Undirected,
     percept::{Percept, Sighting},
     trace::{
         AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceEventKind, TraceOrderError,
@@ -51,7 +53,7 @@ pub struct Judgement {
     /// too large.
     pub trail: Option<FoldedTrail>,
     /// The candidate poses in the known world.
-    pub poses: Option<Poses>,
+    pub poses: Option<Poses<Places>>,
     /// The smallest world that explains the log, if none is known and one of any size may.
     pub smallest: Option<SmallestWorld>,
     /// Whether the events before the divergence, or all, determine their world; `None` if this is not known.
@@ -109,8 +111,11 @@ pub enum JudgeError {
     OutOfOrder { event: usize, order: OutOfOrder },
     #[error(transparent)]
     Marker(#[from] SightingError),
-    #[error("{} needs the directional marker, not `{marker}`", algorithm.in_words())]
-    Algorithm { algorithm: MappingAlgorithm, marker: &'static str },
+    #[error("{} needs `{}`, not `{aid}`", algorithm.in_words(), algorithm.aid().name())]
+    Algorithm { algorithm: MappingAlgorithm, aid: &'static str },
+    /// An event, counted from 1.
+    #[error("event {event}: a robot with `{aid}` cannot do `{action}`")]
+    Action { event: usize, action: AidAction, aid: &'static str },
 }
 
 /// Why a divergence accuses nobody.
@@ -168,12 +173,13 @@ pub fn judge(
         OutOfOrder::check(two[0].source.time, two[1].source.time)
             .map_err(|order| JudgeError::OutOfOrder { event: index + 2, order })?;
     }
-    events.complete_sightings(config.marker)?;
-    let marker = config.marker.name();
-    if let Some(algorithm) = config.driver.algorithm()
-        && marker != Directional.name()
-    {
-        return Err(JudgeError::Algorithm { algorithm, marker });
+    events.complete_sightings(config.aid)?;
+    let aid = config.aid.name();
+    if let Some(algorithm) = config.driver.algorithm().filter(|it| it.aid() != config.aid) {
+        return Err(JudgeError::Algorithm { algorithm, aid });
+    }
+    if let Some((index, action)) = events.first_action().filter(|_| !config.aid.moves()) {
+        return Err(JudgeError::Action { event: index + 1, action, aid });
     }
     if let Some(undecided) = Judgement::of_undecided(&events) {
         return Ok(undecided);
@@ -270,9 +276,9 @@ impl Judgement {
 
     fn compare_world(&mut self, config: &ConformConfig, found: &mut FirstDivergence) {
         let Some(known) = &config.world else { return };
-        let poses = poses(&known.graph, &config.marker, &known.states, &self.trace);
+        let poses = poses(&known.graph, &config.aid, &known.states, &self.trace);
         if let Some(misfit) = &poses.misfit {
-            let fault = known.fault(&self.trace, misfit, config.marker);
+            let fault = known.fault(&self.trace, misfit, config.aid);
             found.note_as(misfit.event.id, DivergenceCause::World(misfit.clone()), fault);
         }
         self.poses = Some(poses);
@@ -285,10 +291,10 @@ impl Judgement {
         watch: &dyn Watch,
     ) -> Option<(usize, Impossibility)> {
         let FoldedTrace { trail, mut impossible } =
-            FoldedTrace::new(&self.trace, config.marker, config.search.class);
+            FoldedTrace::new(&self.trace, config.aid, config.search.class);
         self.determined = trail.as_ref().map(|trail| trail.open_count() == 0);
         self.trail = trail;
-        if config.marker == Undirected {
+        if config.aid == AidKind::Fixed(Undirected) {
             let elsewhere = self.unite_marked(watch);
             impossible =
                 [impossible, elsewhere].into_iter().flatten().min_by_key(|(event, _)| *event);
@@ -344,6 +350,10 @@ impl Judgement {
         watch: &dyn Watch,
         found: &mut FirstDivergence,
     ) {
+        if config.aid.moves() {
+            self.smallest = Some(self.mapped_world(config.aid));
+            return;
+        }
         if impossible.is_none() {
             let search = |trail: &FoldedTrail| smallest_world(trail, config.search, watch);
             let too_large = SmallestWorld::NotFound { limit: SearchLimit::Decisions };
@@ -363,7 +373,25 @@ impl Judgement {
         }
     }
 
-    /// Compares the doors with the algorithm, and what it knows with the recorded end.
+    /// The complete map of a robot whose aid moves, if a robot in it has these percepts. Other worlds are not searched.
+    fn mapped_world(&self, aid: AidKind) -> SmallestWorld {
+        let limit = SearchLimit::Aid;
+        let map = self.algorithm.as_ref().and_then(|followed| followed.run.map().complete());
+        let explains = |map: &&EmbeddedGraph| {
+            let start = State { pose: FACING, placed: aid.placed(map, FACING) };
+            poses(map, &aid, &[start], &self.trace).misfit.is_none()
+        };
+        match map.filter(explains) {
+            Some(map) => SmallestWorld::World {
+                graph: map.clone(),
+                marker: Some(FACING),
+                limit: Some(limit),
+            },
+            None => SmallestWorld::NotFound { limit },
+        }
+    }
+
+    /// Compares the actions with the algorithm, and what it knows with the recorded end.
     fn follow_algorithm(
         &mut self,
         config: &ConformConfig,
@@ -375,7 +403,7 @@ impl Judgement {
             found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));
         }
         if in_turn {
-            for cause in self.events.false_ending(&followed, config.world.as_ref()) {
+            for cause in self.events.false_ending(&followed, (config.world.as_ref(), config.aid)) {
                 found.note(self.events.events.len(), cause);
             }
         }
@@ -505,7 +533,11 @@ fn trace_in_turn(events: &RunEvents, found: &mut FirstDivergence) -> Result<Trac
     match events.trace() {
         Ok(all) => Ok(all),
         Err(TraceOrderError::Empty) => Err(JudgeError::Empty),
-        Err(not @ (TraceOrderError::NoDoor { event } | TraceOrderError::NoPercept { event })) => {
+        Err(
+            not @ (TraceOrderError::NoDoor { event }
+            | TraceOrderError::NoPercept { event }
+            | TraceOrderError::ActionOnTheWay { event }),
+        ) => {
             found.note(event, DivergenceCause::NotInTurn(not));
             let last = event.checked_sub(1).ok_or(JudgeError::Empty)?;
             events.up_to(last).trace().map_err(|_| JudgeError::Empty)

@@ -2,17 +2,16 @@
 //! class of a percept that does not fit it.
 
 use toposlam_model::{
-    aid::State,
+    aid::{Aid, AidKind, Places, State},
     driving::visit::JunctionShape,
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
     isomorphism::code,
     mapping::{FACING, MapWalk, MappingAlgorithm, MappingEvent, Observer},
-    marker::{Marker, MarkerKind},
-    percept::{Percept, WalkEvent},
+    percept::Percept,
     trace::{
-        self, AlgorithmCase, AlgorithmCoverage, Misfit, MisfitReason, Trace, TraceEventKind,
-        anywhere, poses,
+        self, AlgorithmCase, AlgorithmCoverage, Misfit, MisfitReason, Trace, TraceEvent,
+        TraceEventKind, anywhere, poses,
     },
     world::GraphWorld,
 };
@@ -48,24 +47,26 @@ impl Known {
     pub(super) fn new(
         world: NamedWorld,
         start: Option<Dart>,
-        (marker, lies): (MarkerKind, MarkerStart),
+        (aid, lies): (AidKind, MarkerStart),
         algorithm: MappingAlgorithm,
     ) -> Option<(Self, KnownWorld)> {
         let graph = &world.graph;
         let states = match (lies, start) {
-            (MarkerStart::Robot, None) => anywhere(graph, &marker),
+            (MarkerStart::Robot, None) => anywhere(graph, &aid),
             (MarkerStart::Robot, Some(facing)) => {
-                vec![GraphWorld::with_aid(graph, marker, facing).state()]
+                vec![GraphWorld::with_aid(graph, aid, facing).state()]
             }
             (MarkerStart::Anywhere, start) => {
-                let places = graph.darts().filter(|&dart| marker.first_alike(graph, dart) == dart);
-                let places: Vec<Dart> = places.collect();
+                let places = graph.darts().filter(|&dart| aid.first_alike(graph, dart) == dart);
+                let places: Vec<Places> = places.map(|dart| aid.placed(graph, dart)).collect();
                 let poses: Vec<Dart> =
                     start.map_or_else(|| graph.darts().collect(), |start| vec![start]);
                 if poses.len().saturating_mul(places.len()) > MOST_STATES {
                     return None;
                 }
-                let with = |placed| poses.iter().map(move |&pose| State { pose, placed });
+                let with = |placed: Places| {
+                    poses.iter().map(move |&pose| State { pose, placed: placed.clone() })
+                };
                 places.into_iter().flat_map(with).collect()
             }
         };
@@ -108,15 +109,15 @@ struct ExpectedRun {
 impl ExpectedRun {
     fn new(algorithm: MappingAlgorithm, graph: &EmbeddedGraph, start: Dart) -> Self {
         let mut expected = Self::default();
-        let mut world = GraphWorld::new(graph, start);
+        let mut world = GraphWorld::with_aid(graph, algorithm.aid(), start);
         // In a world of this size the run ends.
         let _ = algorithm.map_world(&mut world, 2 * graph.dart_count(), &mut expected);
         expected
     }
 }
 
-impl Observer<GraphWorld<'_>> for ExpectedRun {
-    fn event(&mut self, world: &mut GraphWorld, journey: &MapWalk, event: MappingEvent) {
+impl<A: Aid> Observer<GraphWorld<'_, A>> for ExpectedRun {
+    fn event(&mut self, world: &mut GraphWorld<'_, A>, journey: &MapWalk, event: MappingEvent) {
         self.coverage.event(world, journey, event);
         self.poses.push(world.state().pose);
     }
@@ -126,50 +127,74 @@ impl Observer<GraphWorld<'_>> for ExpectedRun {
 #[derive(Clone, Debug)]
 pub struct KnownWorld {
     pub graph: EmbeddedGraph,
-    pub states: Vec<State>,
+    pub states: Vec<State<Places>>,
 }
 
 impl KnownWorld {
     /// The fault class of a misfit. It is motion if the following events fit better from another pose than
     /// after one wrong percept.
-    pub(super) fn fault(&self, trace: &Trace, misfit: &Misfit, marker: MarkerKind) -> FaultClass {
+    pub(super) fn fault(&self, trace: &Trace, misfit: &Misfit<Places>, aid: AidKind) -> FaultClass {
         let TraceEventKind::Percept(perceived) = misfit.event.kind else {
             return FaultClass::Algorithm;
         };
-        let moves = misfit.moves;
-        let perceived_wrongly = misfit.candidates.iter().filter_map(|&(state, why)| {
-            let MisfitReason::Percept { expected } = why else { return None };
-            Some(self.fitting(&ahead(trace, moves, expected), &[state], marker))
+        let perceived_wrongly = misfit.candidates.iter().filter_map(|(state, why)| {
+            let MisfitReason::Percept { expected } = *why else { return None };
+            Some(self.fitting(
+                &ahead(trace, misfit.event, expected),
+                std::slice::from_ref(state),
+                aid,
+            ))
         });
         let perceived_wrongly = perceived_wrongly.max().unwrap_or(0);
-        let placed = misfit.candidates.iter().map(|(state, _)| state.placed);
-        let elsewhere = |placed| self.graph.darts().map(move |pose| State { pose, placed });
+        let placed = misfit.candidates.iter().map(|(state, _)| &state.placed);
+        let elsewhere = |placed: &Places| {
+            let placed = placed.clone();
+            self.graph.darts().map(move |pose| State { pose, placed: placed.clone() })
+        };
         let elsewhere: Vec<_> = placed.take(1).flat_map(elsewhere).collect();
-        let came_elsewhere = self.fitting(&ahead(trace, moves, perceived), &elsewhere, marker);
+        let came_elsewhere = self.fitting(&ahead(trace, misfit.event, perceived), &elsewhere, aid);
         if came_elsewhere > perceived_wrongly { FaultClass::Motion } else { FaultClass::Perception }
     }
 
     /// The number of events that fit.
-    fn fitting(&self, trace: &Trace, states: &[State], marker: MarkerKind) -> usize {
-        poses(&self.graph, &marker, states, trace).left.len()
+    fn fitting(&self, trace: &Trace, states: &[State<Places>], aid: AidKind) -> usize {
+        poses(&self.graph, &aid, states, trace).left.len()
     }
 
-    /// Whether a map is this world from one of its starts.
-    pub(super) fn has(&self, map: &EmbeddedGraph) -> bool {
+    /// Whether a map of a robot with this aid is this world from one of its starts.
+    pub(super) fn has(&self, map: &EmbeddedGraph, aid: AidKind) -> bool {
         let of_map = code(map, FACING);
-        let is = |state: &State| code(&self.graph, state.placed) == of_map;
-        self.states.iter().any(is)
+        let facing = |state: &State<Places>| {
+            if aid.moves() { Some(state.pose) } else { fixed_place(&state.placed) }
+        };
+        let mut facing = self.states.iter().filter_map(facing);
+        facing.any(|dart| code(&self.graph, dart) == of_map)
     }
+
+    /// The states of a robot with a fixed marker.
+    pub(super) fn with_fixed_marker(&self) -> Vec<State> {
+        self.states.iter().filter_map(state_of_fixed).collect()
+    }
+}
+
+/// Where a fixed marker is.
+fn fixed_place(placed: &Places) -> Option<Dart> {
+    placed.first().copied().flatten()
+}
+
+/// The same state of a robot with a fixed marker.
+pub(super) fn state_of_fixed(state: &State<Places>) -> Option<State> {
+    Some(State { pose: state.pose, placed: fixed_place(&state.placed)? })
 }
 
 /// The number of following events that decide the fault class of a misfit.
 const AHEAD: usize = 12;
 
-/// The trace after some moves, with another first percept.
-fn ahead(trace: &Trace, moves: usize, first: Percept) -> Trace {
+/// The trace from a percept that does not fit, with another one in its place.
+fn ahead(trace: &Trace, misfit: TraceEvent, first: Percept) -> Trace {
     let first = TraceEventKind::Percept(first);
-    let rest = trace.events().skip(WalkEvent::Door(moves).index());
-    let rest = rest.take(AHEAD).map(|event| event.kind);
+    let rest = trace.events().skip_while(|&(_, event)| event.id != misfit.id);
+    let rest = rest.skip(1).take(AHEAD).map(|(_, event)| event.kind);
     // They take turns as before, whatever the first percept is.
     Trace::new(std::iter::once(first).chain(rest)).unwrap_or_else(|_| trace.clone())
 }

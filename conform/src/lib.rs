@@ -41,6 +41,7 @@ mod tests;
 
 pub use check::{
     CheckError, CheckedLog, DoorChooser, LogCheck, LogSource, MarkerPlaceError, RobotStart,
+    checked_aids,
 };
 pub use config::{ConformConfig, RunDriver};
 pub use divergence::{Divergence, DivergenceCause, FaultClass};
@@ -57,7 +58,7 @@ pub use judgement::{
     ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, Unproved, judge,
 };
 pub use known_world::{Known, KnownWorld};
-pub use log_head::{LogHead, MarkerNotShown, RESUMED_REMARK, RecordedMarkerError};
+pub use log_head::{LogHead, MarkerNotShown, RESUMED_REMARK};
 pub use marked_visits::{
     AddedMarker, MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits,
     marker_at_start,

@@ -1,14 +1,14 @@
-//! What the head of a log records about its run, as a check of the log needs it: the marker, the settings, the
+//! What the head of a log records about its run, as a check of the log needs it: the marking aid, the settings, the
 //! start and the world.
 
 use thiserror::Error;
 use toposlam_logs::{messages::Run, world_hash};
 use toposlam_model::{
-    aid::{self, AidKind},
+    aid::{self, AidKind, UnknownAid},
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
-    marker::{self, Directional, MarkerKind, UnknownMarker},
+    marker::Directional,
 };
 use toposlam_robot::run_settings::RecordedSettings;
 
@@ -25,30 +25,17 @@ pub struct MarkerNotShown {
     pub algorithm: MappingAlgorithm,
 }
 
-/// The head of a log names no fixed marker.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum RecordedMarkerError {
-    #[error(transparent)]
-    Unknown(#[from] UnknownMarker),
-    #[error("its robot maps with `{}`, which moves; only logs with a fixed marker are checked", .0.name())]
-    Moves(AidKind),
-}
-
 impl<'r> LogHead<'r> {
     fn marker_name(self) -> Option<&'r str> {
         self.0.map(|run| run.marker.as_str()).filter(|name| !name.is_empty())
     }
 
-    /// The marker of the robot: without a record, a directional one.
+    /// The marking aid of the robot: without a record, a directional marker.
     ///
     /// # Errors
-    /// Returns an error if the recorded name is no fixed marker's.
-    pub fn marker(self) -> Result<MarkerKind, RecordedMarkerError> {
-        let Some(name) = self.marker_name() else { return Ok(Directional) };
-        match aid::named(name) {
-            Ok(aid) if aid.moves() => Err(RecordedMarkerError::Moves(aid)),
-            _ => Ok(marker::named(name)?),
-        }
+    /// Returns an error if the recorded name is no aid's.
+    pub fn aid(self) -> Result<AidKind, UnknownAid> {
+        self.marker_name().map_or(Ok(Directional.into()), aid::named)
     }
 
     /// How the robot mapped, and within which limits, by this algorithm if one is given; without either by

@@ -3,6 +3,7 @@
 
 use serde::Serialize;
 use toposlam_model::{
+    aid::Places,
     embedded_graph::{Dart, EmbeddedGraph},
     folding::{FoldedTrail, fold},
     measurement::{
@@ -34,7 +35,7 @@ impl MeasuredHallways {
         events: &RunEvents,
         trace: &Trace,
         trail: Option<&FoldedTrail>,
-        known: Option<(&EmbeddedGraph, &Poses)>,
+        known: Option<(&EmbeddedGraph, &Poses<Places>)>,
     ) -> (Self, Option<(usize, DivergenceCause)>) {
         let unplaced = unplaced_visits(events, trace);
         let check =
@@ -126,12 +127,16 @@ fn by_trail(visits: &[MeasuredVisit], trace: &Trace, trail: &FoldedTrail) -> Vec
 }
 
 /// The visits with the vertices of a known world, where only one pose is possible.
-fn by_poses(visits: &[MeasuredVisit], graph: &EmbeddedGraph, poses: &Poses) -> Vec<MeasuredVisit> {
+fn by_poses(
+    visits: &[MeasuredVisit],
+    graph: &EmbeddedGraph,
+    poses: &Poses<Places>,
+) -> Vec<MeasuredVisit> {
     let mut placed = visits.to_vec();
     for (moves, visit) in placed.iter_mut().enumerate() {
-        if let Some(Some(state)) = poses.alone.get(WalkEvent::Percept(moves).index()) {
-            let doors = 0..graph.degree_around(state.pose);
-            let darts = doors.map(|door| graph.behind(state.pose, Door(door)));
+        if let Some(&Some(pose)) = poses.alone.get(WalkEvent::Percept(moves).index()) {
+            let doors = 0..graph.degree_around(pose);
+            let darts = doors.map(|door| graph.behind(pose, Door(door)));
             visit.darts = darts.collect::<Vec<Dart>>();
         }
     }

@@ -91,8 +91,10 @@ impl PossibleVisits {
         watch: &dyn Watch,
     ) -> Self {
         let by_anyone = config.driver == RunDriver::Anyone;
+        // Only events that are recorded show what the robot does with an aid that moves.
+        let Some(marker) = config.aid.fixed() else { return Self { by_anyone, ..Self::default() } };
         let (at, sets): (Vec<_>, Vec<_>) =
-            visit_sets(&events.events, junctions, config.marker).into_iter().unzip();
+            visit_sets(&events.events, junctions, marker).into_iter().unzip();
         let is_visit = |&set: &usize| events.events[at[set]].kind != CheckedKind::TurnedBack;
         let of_junctions: Vec<usize> = (0..sets.len()).filter(is_visit).collect();
         let certain = of_junctions.iter().filter(|&&set| sets[set].is_certain()).count();
@@ -100,22 +102,22 @@ impl PossibleVisits {
         if has_unseen_way(&events.events) {
             return Self { fit: VisitFit::UnseenWay, ..judged };
         }
-        let is_marked = config.marker == Directional;
+        let is_marked = marker == Directional;
         if let Some(known) = &config.world {
-            let KnownWorld { graph, states } = known;
-            let mut after = states_after(graph, &config.marker, states, &sets);
+            let (graph, states) = (&known.graph, known.with_fixed_marker());
+            let mut after = states_after(graph, &marker, &states, &sets);
             judged.states = after.pop().unwrap_or_default();
             let fits = sets.is_empty() || !judged.states.is_empty();
             judged.fit = if fits { VisitFit::Fits } else { VisitFit::Contradiction };
             if !fits {
-                judged.refuted = driven.and_then(|driven| refuted(driven, known, config.marker));
+                judged.refuted = driven.and_then(|driven| refuted(driven, known, marker));
             }
-            let left = alternatives_left(graph, &config.marker, states, &sets);
+            let left = alternatives_left(graph, &marker, &states, &sets);
             let is_decided = |set: usize| left[set].len() == 1 && !sets[set].is_certain();
             let numbered = of_junctions.iter().enumerate();
             judged.decided_by_world =
                 numbered.filter(|&(_, &set)| is_decided(set)).map(|(number, _)| number).collect();
-        } else if is_marked || config.marker == NoMarker {
+        } else if is_marked || marker == NoMarker {
             let may_contradict = is_marked || sets.iter().any(|set| set.way() == VisitWay::Back);
             judged.fit = match explain(&sets, is_marked, MOST_DARTS, watch) {
                 Explanation::Explained(_) if may_contradict => VisitFit::Fits,
@@ -141,7 +143,9 @@ impl PossibleVisits {
         if self.fit != VisitFit::Fits {
             return None;
         }
-        let world = config.world.as_ref().map(|known| (&known.graph, &known.states[..]));
+        let states = config.world.as_ref().map(KnownWorld::with_fixed_marker);
+        let known = config.world.as_ref().zip(states.as_deref());
+        let world = known.map(|(known, states)| (&known.graph, states));
         let bounds = AlgorithmSearchBounds { darts: config.dart_bound, steps: MOST_STEPS };
         Some(match explain_by_algorithm(algorithm, sets, world, bounds, watch) {
             Explanation::Explained(_) => VisitFit::Fits,
@@ -201,7 +205,7 @@ fn refuted(driven: &DrivenVisits, known: &KnownWorld, marker: MarkerKind) -> Opt
         return None;
     }
     let (at, sets): (Vec<_>, Vec<_>) = visit_sets(events, junctions, marker).into_iter().unzip();
-    let after = states_after(&known.graph, &marker, &known.states, &sets);
+    let after = states_after(&known.graph, &marker, &known.with_fixed_marker(), &sets);
     let is_misfit = after.last().is_some_and(Vec::is_empty);
     is_misfit.then(|| events[at[after.len() - 1]].source.time)
 }
@@ -223,7 +227,9 @@ fn visit_sets(
                 let set = junction.map(|junction| visit_set(junction, sighting, marker));
                 sets.extend(set.map(|set| (index, set)));
             }
-            CheckedKind::Door { .. } | CheckedKind::LeftBetweenDoors { .. } => {}
+            CheckedKind::Door { .. }
+            | CheckedKind::Action { .. }
+            | CheckedKind::LeftBetweenDoors { .. } => {}
         }
     }
     sets

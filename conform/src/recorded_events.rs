@@ -1,4 +1,4 @@
-//! The recorded arrivals and doors of a log, compared with its odometry.
+//! The recorded arrivals, actions and doors of a log, compared with its odometry.
 
 use std::{collections::VecDeque, f64::consts::PI};
 
@@ -35,8 +35,17 @@ impl RecordedEvents {
     pub fn observe(&mut self, source: EventSource, kind: &EventKind) {
         match kind {
             EventKind::Odometry(odometry) => self.moved(*odometry),
+            EventKind::Arrival(arrival) if self.has_acted() => {
+                let arrival = *arrival;
+                let kind = CheckedKind::Arrival { arrival, entry_off: None, hallway: None };
+                self.events.push(CheckedEvent { source, kind });
+            }
             EventKind::Arrival(arrival) => self.arrived(source, *arrival),
             EventKind::Door { number, door } => self.left(source, *number, *door),
+            EventKind::Action { number, action } => {
+                let kind = CheckedKind::Action { number: *number, action: *action };
+                self.events.push(CheckedEvent { source, kind });
+            }
             _ => {}
         }
     }
@@ -45,6 +54,12 @@ impl RecordedEvents {
     pub fn note(&mut self, source: EventSource, kind: CheckedKind) {
         (self.left, self.hallway) = (None, None);
         self.events.push(CheckedEvent { source, kind });
+    }
+
+    /// Whether the robot has just done something with its marking aid: it then perceives again where it stands.
+    fn has_acted(&self) -> bool {
+        let last = self.events.last();
+        last.is_some_and(|event| matches!(event.kind, CheckedKind::Action { .. }))
     }
 
     fn moved(&mut self, odometry: Odometry) {
@@ -89,7 +104,9 @@ impl RecordedEvents {
     }
 
     fn left(&mut self, source: EventSource, number: Option<u32>, door: Door) {
-        let direction = match self.events.last().map(|event| &event.kind) {
+        let arrived =
+            self.events.iter().rfind(|event| !matches!(event.kind, CheckedKind::Action { .. }));
+        let direction = match arrived.map(|event| &event.kind) {
             Some(CheckedKind::Arrival {
                 arrival: Arrival { shape: Some(shape), entry: Some(entry), .. },
                 ..

@@ -3,6 +3,7 @@
 use std::mem::discriminant;
 
 use toposlam_model::{
+    aid::Action,
     enumerate::Watch,
     folding::WorldSearch,
     percept::WalkEvent,
@@ -140,18 +141,27 @@ impl ConformConfig {
 
 /// Events of percepts and doors alone, a second apart, in a log like that of a whole run.
 fn events_of_trace(trace: &Trace, whole: &RunEvents) -> RunEvents {
-    let event = |(index, event): (usize, TraceEvent)| {
-        let moves = WalkEvent::at(index).moves();
+    // Of all robots together.
+    let mut moves = 0;
+    let event = |(index, (at, event)): (usize, (Option<WalkEvent>, TraceEvent))| {
         let source = EventSource { time: index as u64 * 1_000_000_000, ..EventSource::default() };
         let mut kind = match event.kind {
             TraceEventKind::Percept(percept) => CheckedKind::from(percept),
             TraceEventKind::Door(door) => CheckedKind::from(door),
+            TraceEventKind::Action(action) => CheckedKind::Action { number: Some(moves), action },
         };
+        moves += match event.kind {
+            TraceEventKind::Percept(_) => 0,
+            TraceEventKind::Door(_) => 1,
+            TraceEventKind::Action(action) => Action::Do(action).moves() as u32,
+        };
+        let is_relocation =
+            matches!(at, Some(WalkEvent::Percept(number)) if trace.is_relocation(number));
         match &mut kind {
-            CheckedKind::Arrival { arrival, .. } if !trace.is_relocation(moves) => {
-                arrival.number = Some(moves as u32);
+            CheckedKind::Arrival { arrival, .. } if !is_relocation => {
+                arrival.number = Some(moves);
             }
-            CheckedKind::Door { number, .. } => *number = Some(moves as u32 + 1),
+            CheckedKind::Door { number, .. } => *number = Some(moves),
             _ => {}
         }
         CheckedEvent { source, kind }

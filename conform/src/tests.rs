@@ -32,6 +32,7 @@ use super::*;
 mod extracted;
 mod folding;
 mod measured;
+mod moving;
 mod oracle;
 mod parts;
 mod possible;
@@ -137,8 +138,8 @@ fn good_run() -> RunEvents {
 fn in_world(plan: &FloorPlan, facing: Option<Dart>, config: &ConformConfig) -> ConformConfig {
     let graph = plan.graph().clone();
     let states = match facing {
-        Some(facing) => vec![GraphWorld::with_aid(&graph, config.marker, facing).state()],
-        None => anywhere(&graph, &config.marker),
+        Some(facing) => vec![GraphWorld::with_aid(&graph, config.aid, facing).state()],
+        None => anywhere(&graph, &config.aid),
     };
     ConformConfig { world: Some(KnownWorld { graph, states }), ..config.clone() }
 }
@@ -154,7 +155,7 @@ fn anywhere_in(plan: &FloorPlan) -> ConformConfig {
 fn without_world() -> ConformConfig {
     ConformConfig {
         world: None,
-        marker: Directional,
+        aid: Directional.into(),
         driver: RunDriver::from(MappingAlgorithm::Algorithm1),
         budget: RunBudget::default(),
         search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100_000 },

@@ -7,6 +7,7 @@
 use std::collections::BTreeSet;
 
 use toposlam_model::{
+    aid::Places,
     mapping::{Contradiction, MappingMethod},
     percept::Percept,
     trace::{Departure, Misfit, MisfitReason, StepPurpose, match_amended, poses_amended},
@@ -120,12 +121,12 @@ impl<'q> Tolerance<'q> {
         let Some(known) = &self.config.world else { return };
         let Ok(trace) = self.amended.trace() else { return };
         let mut tolerated = Vec::new();
-        let amend = |misfit: &Misfit| {
+        let amend = |misfit: &Misfit<Places>| {
             let event = Some(misfit.event.id).filter(|&event| event < limit)?;
             tolerated.push(self.tolerable(event, DivergenceCause::World(misfit.clone()))?);
             expected_by(misfit)
         };
-        let _ = poses_amended(&known.graph, &self.config.marker, &known.states, &trace, amend);
+        let _ = poses_amended(&known.graph, &self.config.aid, &known.states, &trace, amend);
         self.tolerated.extend(tolerated);
     }
 
@@ -158,10 +159,10 @@ fn expected(cause: &DivergenceCause) -> Option<Percept> {
 }
 
 /// The percept that all candidate poses expect.
-fn expected_by(misfit: &Misfit) -> Option<Percept> {
+fn expected_by(misfit: &Misfit<Places>) -> Option<Percept> {
     let mut expected = misfit.candidates.iter().map(|(_, why)| match why {
         MisfitReason::Percept { expected } => Some(*expected),
-        MisfitReason::NoSuchDoor { .. } => None,
+        MisfitReason::NoSuchDoor { .. } | MisfitReason::Refused(_) => None,
     });
     let first = expected.next()??;
     expected.all(|other| other == Some(first)).then_some(first)
@@ -195,7 +196,7 @@ mod tests {
         let percept = |degree| Percept { degree, sighting: Sighting::Nothing };
         let at = |degree| MisfitReason::Percept { expected: percept(degree) };
         let no_door = MisfitReason::NoSuchDoor { degree: 3 };
-        let state = State { pose: Dart(0), placed: Dart(0) };
+        let state = State { pose: Dart(0), placed: Places::from_elem(Some(Dart(0)), 1) };
         let event = TraceEvent { id: 2, kind: TraceEventKind::Percept(percept(5)) };
         for (reasons, expected) in [
             (&[at(3)][..], Some(percept(3))),
@@ -204,7 +205,7 @@ mod tests {
             (&[at(3), no_door], None),
             (&[], None),
         ] {
-            let candidates = reasons.iter().map(|reason| (state, *reason)).collect();
+            let candidates = reasons.iter().map(|reason| (state.clone(), *reason)).collect();
             assert_eq!(expected_by(&Misfit { event, moves: 1, candidates }), expected);
         }
     }

@@ -13,7 +13,11 @@ use toposlam_model::{
     trace::poses,
 };
 
-use super::{config::ConformConfig, judgement::Judgement, known_world::KnownWorld};
+use super::{
+    config::ConformConfig,
+    judgement::Judgement,
+    known_world::{KnownWorld, state_of_fixed},
+};
 
 /// Another world that explains a log, and that no walk distinguishes from the first one.
 #[derive(Clone, Debug, Serialize)]
@@ -50,7 +54,7 @@ impl TwinWorld {
     /// A world that no walk distinguishes from the known world of a log, or from the smallest one that explains
     /// it; the log is judged in it again. A robot without a marker has too many.
     pub(super) fn find(judgement: &Judgement, config: &ConformConfig) -> Option<Self> {
-        let marker = config.marker;
+        let marker = config.aid.fixed()?;
         let diverges = judgement.divergence.is_some() || judgement.contradiction.is_some();
         if diverges || marker == NoMarker {
             return None;
@@ -60,7 +64,7 @@ impl TwinWorld {
         };
         let (graph, start) = match (&config.world, &judgement.smallest) {
             (Some(KnownWorld { graph, states }), _) => {
-                (graph, *states.iter().find(|&&start| fits(graph, start))?)
+                (graph, states.iter().filter_map(state_of_fixed).find(|&start| fits(graph, start))?)
             }
             (None, Some(SmallestWorld::World { graph, marker: placed, .. })) => {
                 (graph, State { pose: Dart(0), placed: (*placed)? })
@@ -70,7 +74,7 @@ impl TwinWorld {
         let first_marker = start.placed;
         let Twins { worlds, may_be_more } = twins(graph, &marker, first_marker, start.pose, &());
         let explains = |twin: &&ambiguity::Twin| {
-            let placed = marker.first_alike(&twin.graph, twin.facing);
+            let placed = Marker::first_alike(&marker, &twin.graph, twin.facing);
             fits(&twin.graph, State { pose: twin.pose, placed })
         };
         let explaining: Vec<_> = worlds.iter().filter(explains).collect();

@@ -124,6 +124,7 @@ pub fn event(kind: &CheckedKind) -> String {
             format!("percept: {}{shape}", Percept { degree, sighting })
         }
         CheckedKind::Door { door, .. } => format!("door {}", door.0),
+        CheckedKind::Action { action, .. } => action.to_string(),
         CheckedKind::LeftBetweenDoors { off } => {
             format!("left {:.0} degrees off the nearest door", off.to_degrees())
         }
@@ -177,6 +178,9 @@ pub fn allowed(divergence: &DivergenceReport) -> Vec<String> {
             }
             Allowed::InWorld(pose, MisfitReason::NoSuchDoor { degree }) => {
                 format!("{}: doors 0 to {}", pose_name(pose), degree.saturating_sub(1))
+            }
+            Allowed::InWorld(pose, MisfitReason::Refused(refused)) => {
+                format!("{}: {refused}", pose_name(pose))
             }
         })
         .collect();
@@ -430,6 +434,7 @@ fn limit(reached: &Limit, facts: &Facts) -> String {
         }
         SearchLimit::Decisions => "the search has too many places to decide".to_owned(),
         SearchLimit::Stopped => "the search was stopped".to_owned(),
+        SearchLimit::Aid => "worlds are not searched for a marking aid that moves".to_owned(),
     };
     match reached.reached {
         ReachedLimit::SmallerWorld(limit) => {
@@ -625,11 +630,13 @@ fn twin(twin: &TwinWorld) -> String {
 fn doors(doors: ComparedDoors) -> String {
     let ComparedDoors { algorithm, choices, recovers, departs_after, .. } = doors;
     let choices = match (choices, algorithm) {
-        (_, MappingAlgorithm::Folding) => {
-            let recovery = if recovers { " with recovery" } else { "" };
-            format!("those of the folding explorer{recovery}")
+        (MatchedChoices::Default, MappingAlgorithm::Algorithm1) => {
+            "those of Algorithm 1 with its default choices".to_owned()
         }
-        (MatchedChoices::Default, _) => "those of Algorithm 1 with its default choices".to_owned(),
+        (MatchedChoices::Default, other) => {
+            let recovery = if recovers { " with recovery" } else { "" };
+            format!("those of {}{recovery}", other.in_words())
+        }
         (MatchedChoices::Other { from: None }, _) => {
             "allowed by Algorithm 1; with its default choices it would continue".to_owned()
         }
@@ -685,10 +692,7 @@ pub fn required(coverage: &RequiredCoverage) -> String {
     };
     let foreign = match &not_applicable[..] {
         [] => String::new(),
-        cases => format!(
-            "; the folding explorer does not have these cases of Algorithm 1: {}",
-            cases.join(", ")
-        ),
+        cases => format!("; only Algorithm 1 has these cases: {}", cases.join(", ")),
     };
     let cases = if required.len() == 1 { "required case" } else { "required cases" };
     format!("{} {cases}: {not_covered}{foreign}", required.len())

@@ -175,7 +175,8 @@ pub(super) fn door_of(message: &Door) -> EventKind {
     EventKind::Door { number: known(message.r#move), door: percept::Door(message.door) }
 }
 
-pub(super) fn action(stamp: Stamp, number: Option<u32>, action: AidAction) -> Action {
+/// What the robot did with its marking aid after so many moves.
+pub fn action(stamp: Stamp, number: Option<u32>, action: AidAction) -> Action {
     Action { stamp, r#move: number.unwrap_or(UNKNOWN), action: action.to_string() }
 }
 

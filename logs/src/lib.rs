@@ -43,7 +43,8 @@ pub mod writer;
 pub use compressed::FileCompression;
 pub use container::{Format, MOST_GROWTH};
 pub use encode::{
-    arrival as arrival_message, door as door_message, map as map_message, scene as scene_message,
+    action as action_message, arrival as arrival_message, door as door_message, map as map_message,
+    scene as scene_message,
 };
 pub use line_times::LineTimes;
 pub use merge::{RawMessage, RawMessages};

@@ -7,7 +7,7 @@ use toposlam_conform::{
 };
 use toposlam_logs::topic_map::TopicMap;
 use toposlam_model::{
-    folding::WorldSearch, mapping::MappingAlgorithm, marker, percept::Percept as ModelPercept,
+    aid, folding::WorldSearch, mapping::MappingAlgorithm, percept::Percept as ModelPercept,
     percept::Sighting, trace::AlgorithmCase,
 };
 use toposlam_vision::{
@@ -40,8 +40,8 @@ pub(crate) fn conform<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let known =
-        |name| marker::named(name).map_err(|unknown| error(py, "UnknownMarkerError", unknown));
-    let marker = marker.map(known).transpose()?;
+        |name| aid::named(name).map_err(|unknown| error(py, "UnknownMarkerError", unknown));
+    let aid = marker.map(known).transpose()?;
     let doors = match driver {
         "anyone" => DoorChooser::Anyone,
         "algorithm" => DoorChooser::Algorithm(None),
@@ -60,7 +60,7 @@ pub(crate) fn conform<'py>(
         laser,
         world: world.map(|world| &world.0),
         start: RobotStart::Recorded,
-        marker,
+        aid,
         assumes_marker: assumed,
         doors,
         search: WorldSearch { class, max_edges, steps: max_steps },
@@ -77,7 +77,7 @@ pub(crate) fn conform<'py>(
         (Ok((report, is_resumed)), false) => fields(py, &report, is_resumed),
         (Err(cause), false) => Err(match cause {
             NotChecked::Sensor(cause) => log_error(cause),
-            NotChecked::Check(CheckError::Marker(cause)) => error(py, "UnknownMarkerError", cause),
+            NotChecked::Check(CheckError::Aid(cause)) => error(py, "UnknownMarkerError", cause),
             NotChecked::Check(CheckError::Algorithm(head)) => {
                 let cause = format!(
                     "the algorithm `{head}` of the log is unknown; use driver=\"algorithm1\""

@@ -190,11 +190,12 @@ mod tests {
             ("folding min-arm=-1 corners=no", "`min-arm=-1` has no number"),
             ("folding min-arm=1 corners=maybe", "`corners=maybe` is neither yes nor no"),
             ("folding max-darts=few", "`max-darts=few` has no number"),
-            ("max-moves=3", "`` is not algorithm1 or folding"),
             ("folding slowly", "`slowly` does not follow the name of an algorithm"),
         ] {
             assert_eq!(RecordedSettings::from_head(text), Err(cause.to_owned()));
         }
+        let nameless = RecordedSettings::from_head("max-moves=3").unwrap_err();
+        assert!(nameless.starts_with("`` is no algorithm; they are algorithm1, folding,"));
     }
 
     #[test]

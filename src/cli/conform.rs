@@ -19,14 +19,15 @@ use clap::{
 };
 use toposlam_conform::{
     ConformReports, ConformVerdict, DoorChooser, Evidence, LogReport, Quirks, RequiredCoverage,
-    RobotStart, UnreadLog, case_names, words,
+    RobotStart, UnreadLog, case_names, checked_aids, words,
 };
 use toposlam_model::{
+    aid::{self, AidKind},
     enumerate::Class,
     folding::WorldSearch,
     format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
-    marker::{self, Directional, MarkerKind, NoMarker, Undirected},
+    marker::{Directional, NoMarker},
     trace::AlgorithmCase,
 };
 
@@ -86,7 +87,7 @@ pub(super) struct ConformArguments {
     /// Run sensing and mapping again on the images, scans or scenes of the log, without a robot, and compare
     /// scenes, commands, percepts, doors and the map with the recorded ones
     #[arg(long, conflicts_with_all = [
-        "world", "start", "marker", "assume_marker", "driver", "class", "max_edges", "max_steps",
+        "world", "start", "aid", "assume_marker", "driver", "class", "max_edges", "max_steps",
         "laser_params", "corners", "events", "quirks", "require_coverage", "minimise", "picture", "html", "CiOptions",
     ])]
     rerun: bool,
@@ -97,9 +98,10 @@ pub(super) struct ConformArguments {
     /// [default: from the log, or else from the world file, or else any]
     #[arg(long, value_name = "VERTEX:FACING", requires = "world")]
     start: Option<String>,
-    /// The robot's marker [default: from the log, or else directional]
-    #[arg(long, value_name = "MARKER", value_parser = robot_marker())]
-    marker: Option<MarkerKind>,
+    /// The robot's marking aid; those that move are checked with recorded events [default: from the log, or else
+    /// directional]
+    #[arg(long, visible_alias = "marker", value_name = "KIND", value_parser = robot_aid())]
+    aid: Option<AidKind>,
     /// For events inferred from laser scans: check the log as if a marker had lain at the place that --topics
     /// gives, or else at the first junction that the robot visited, along its entry door
     #[arg(long)]
@@ -184,11 +186,10 @@ fn evidence() -> impl TypedValueParser<Value = Evidence> {
     })
 }
 
-/// Parses the name of the marker of a robot whose log is checked.
-fn robot_marker() -> impl TypedValueParser<Value = MarkerKind> {
-    let kinds = [Directional, Undirected, NoMarker];
-    let kinds = kinds.map(|kind| PossibleValue::new(kind.name()).help(kind.about()));
-    PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
+/// Parses the name of the marking aid of a robot whose log is checked.
+fn robot_aid() -> impl TypedValueParser<Value = AidKind> {
+    let kinds = checked_aids().map(|kind| PossibleValue::new(kind.name()).help(kind.about()));
+    PossibleValuesParser::new(kinds).try_map(|name| aid::named(&name))
 }
 
 /// A largest number of edges.
@@ -328,15 +329,15 @@ impl ConformArguments {
 
     /// Checks the options about the marker and the driver.
     fn check_marker(&self) -> Result<(), CliError> {
-        if let Some(marker) = self.marker.filter(|marker| marker.name() != Directional.name())
+        let fixed = self.aid.and_then(AidKind::fixed);
+        if let Some(marker) = fixed.filter(|&marker| marker != Directional)
             && self.driver == DriverOption::Algorithm
         {
             let cause = "the algorithms need the directional marker; add --driver anyone";
-            return Err(CliError::at(format!("--marker {}", marker.name()), cause));
+            return Err(CliError::at(format!("--aid {}", marker.name()), cause));
         }
-        let is_unmarked = self.marker.is_some_and(|marker| marker.name() == NoMarker.name());
-        if self.assume_marker && is_unmarked {
-            return Err(CliError::at("--assume-marker", "this needs another marker than none"));
+        if self.assume_marker && self.aid.is_some_and(|_| fixed.is_none_or(|it| it == NoMarker)) {
+            return Err(CliError::at("--assume-marker", "this needs a fixed marker"));
         }
         if self.driver == DriverOption::Anyone {
             let cause = "with --driver anyone the doors are compared with no algorithm";

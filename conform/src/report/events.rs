@@ -110,7 +110,7 @@ impl CheckedLog {
         let event = |(index, event): (usize, &CheckedEvent)| {
             let place = judgement.trace.index_of(index);
             let poses = judgement.poses.as_ref();
-            let pose = poses.and_then(|poses| Some(poses.alone.get(place)?.as_ref()?.pose));
+            let pose = poses.and_then(|poses| *poses.alone.get(place)?);
             // After a door it is not known where the robot is until it arrives.
             let there = poses.zip(self.known.as_ref()).filter(|_| event.arrival().is_some());
             let there = there.and_then(|(poses, known)| {
@@ -142,7 +142,11 @@ impl ReportedVisit {
         let mut visits: Vec<Self> = Vec::new();
         let mut turned_back = false;
         for (event, CheckedEvent { source, kind }) in run.events.events.iter().enumerate() {
+            let before = event.checked_sub(1).and_then(|before| run.events.events.get(before));
+            let has_acted = before.is_some_and(|it| matches!(it.kind, CheckedKind::Action { .. }));
             let (degree, marker, length, doubt) = match kind {
+                // It has perceived again where it stands.
+                CheckedKind::Arrival { .. } if has_acted => continue,
                 CheckedKind::Arrival { arrival, hallway, .. } => (
                     Some(arrival.degree),
                     arrival.sighting.and_then(MarkerSeen::from_sighting),
@@ -164,7 +168,7 @@ impl ReportedVisit {
                     turned_back = true;
                     continue;
                 }
-                CheckedKind::LeftBetweenDoors { .. } => continue,
+                CheckedKind::Action { .. } | CheckedKind::LeftBetweenDoors { .. } => continue,
             };
             let junction = run.junctions.iter().find(|junction| junction.event == event);
             let undecided = junction.filter(|_| degree.is_none());

@@ -257,17 +257,19 @@ impl CheckedLog {
     fn world_fact(&self, known: &Known) -> WorldFact {
         let poses = self.judgement.poses.as_ref();
         let sets = self.judgement.possible.as_ref().filter(|_| self.judgement.are_sets_judged());
-        let (last, states) = match sets {
-            Some(sets) => (Some(Some(sets.states.len())), Some(&sets.states)),
-            None => (poses.map(|it| it.left.last().copied()), poses.map(|it| &it.states)),
+        let (last, first) = if let Some(sets) = sets {
+            (Some(Some(sets.states.len())), sets.states.first().map(|state| state.pose))
+        } else {
+            let first = poses.and_then(|it| it.states.first()).map(|state| state.pose);
+            (poses.map(|it| it.left.last().copied()), first)
         };
-        let pose = states.filter(|_| last == Some(Some(1))).and_then(|states| states.first());
+        let pose = first.filter(|_| last == Some(Some(1)));
         WorldFact {
             name: known.world.name.clone(),
             start: known.start.map(|start| known.world.start_text(start)),
             candidates_at_start: poses.and_then(|poses| poses.left.first()).copied().unwrap_or(0),
             candidates_left: last.map(Option::unwrap_or_default),
-            pose: pose.map(|state| known.pose_name(state.pose)),
+            pose: pose.map(|pose| known.pose_name(pose)),
             world: known.world.clone(),
         }
     }
@@ -282,7 +284,7 @@ impl CheckedLog {
             vertices: graph.vertex_count(),
             edges: graph.edge_count(),
             least: limit.is_none(),
-            world: NamedWorld { marker: Some(self.config.marker.into()), ..world },
+            world: NamedWorld { marker: Some(self.config.aid), ..world },
         })
     }
 
@@ -323,8 +325,8 @@ fn known_poses(judgement: &Judgement, trail: &FoldedTrail) -> Vec<Option<(Dart, 
     let mut doors = judgement.trace.doors().iter();
     let mut event = 0;
     while let Some(pose) = next {
-        if let Some(Some(state)) = known.alone.get(event) {
-            poses[trail.vertex(pose)].get_or_insert((pose, state.pose));
+        if let Some(&Some(there)) = known.alone.get(event) {
+            poses[trail.vertex(pose)].get_or_insert((pose, there));
         }
         event += 2;
         next = doors.next().and_then(|&door| trail.opposite(trail.behind(pose, door)));

@@ -256,8 +256,8 @@ impl CheckedLog {
         // Percepts of other robots may have no shapes.
         let shaped = run.filter(|_| !coverage.junctions.is_empty());
         let mut cases = Vec::new();
-        // The folding explorer does not have the cases of Algorithm 1.
-        if algorithm.as_ref().map(|it| it.algorithm) != Some(MappingAlgorithm::Folding) {
+        // Other algorithms do not have its cases.
+        if algorithm.as_ref().is_none_or(|it| it.algorithm == MappingAlgorithm::Algorithm1) {
             cases.extend(AlgorithmCase::ALL.map(|case| CoveredCase {
                 case: case.name(),
                 count: coverage.algorithm.count(case),
@@ -282,7 +282,7 @@ impl CheckedLog {
         let of_search = |limit| match limit {
             SearchLimit::Edges => raised("--max-edges", search.max_edges.unwrap_or(0) as u64),
             SearchLimit::Steps => raised("--max-steps", search.steps),
-            SearchLimit::Decisions | SearchLimit::Stopped => none,
+            SearchLimit::Decisions | SearchLimit::Stopped | SearchLimit::Aid => none,
         };
         match reached {
             ReachedLimit::SmallerWorld(limit) => Limit { decides: false, ..of_search(limit) },

@@ -1,6 +1,9 @@
 //! Logs of the folding explorer, compared with its doors.
 
-use toposlam_model::trace::{AllowedStep, StepPurpose};
+use toposlam_model::{
+    aid::Action,
+    trace::{AllowedStep, StepPurpose},
+};
 
 use super::*;
 
@@ -31,8 +34,8 @@ fn a_log_of_algorithm_1_diverges_at_the_first_door_that_the_explorer_does_not_ta
     let found = divergence(&of_algorithm1, &driven(config.clone(), FOLDING));
     assert_eq!((found.event, found.fault), (first, FaultClass::Algorithm));
     let DivergenceCause::Algorithm(departure) = found.cause else { panic!() };
-    let [AllowedStep { door, purpose }] = departure.allowed[..] else { panic!() };
-    assert_eq!((departure.algorithm, door), (FOLDING, other[first].1));
+    let [AllowedStep { action, purpose }] = departure.allowed[..] else { panic!() };
+    assert_eq!((departure.algorithm, action), (FOLDING, other[first].1.map(Action::Take)));
     assert!(matches!(purpose, StepPurpose::ExploreOpen(_) | StepPurpose::Test { .. }));
     // Nor is the other run one of Algorithm 1.
     assert_eq!(divergence(&of_folding, &config).fault, FaultClass::Algorithm);

@@ -207,7 +207,7 @@ fn in_a_known_world_hallways_are_compared_without_a_marker() {
     let (plan, facing) = place();
     let mut events = good_run();
     events.arrivals_mut().for_each(|arrival| arrival.sighting = None);
-    let unknown = ConformConfig { marker: NoMarker, ..by_anyone() };
+    let unknown = ConformConfig { aid: NoMarker.into(), ..by_anyone() };
     let known = in_world(&plan, Some(facing), &unknown);
     let [known, unknown] =
         [known, unknown].map(|config| judged(&events, &config).measured.compared);

@@ -2,10 +2,9 @@
 //! shorter logs.
 
 use toposlam_logs::{messages::Run, world_hash};
-use toposlam_model::{aid, format::named_world::NamedWorld, marker::NoMarker};
+use toposlam_model::{aid::AidKind, format::named_world::NamedWorld, marker::NoMarker};
 
 use super::*;
-use crate::log_head::RecordedMarkerError;
 
 #[test]
 fn a_log_may_show_a_marker_unless_it_records_that_none_was_seen() {
@@ -31,7 +30,7 @@ fn a_log_may_show_a_marker_unless_it_records_that_none_was_seen() {
         assert_eq!(found.is_ok(), is_compared, "{head:?}");
     }
     // A directional marker lies along a door.
-    let completed = |marker| lying.clone().complete_sightings(marker);
+    let completed = |marker| lying.clone().complete_sightings(AidKind::from(marker));
     assert_eq!(completed(Directional), Err(SightingError::NoDoor));
     assert_eq!(completed(NoMarker), Ok(()));
 }
@@ -52,11 +51,10 @@ fn a_head_decides_the_marker_the_algorithm_the_start_and_the_world() {
         ..Run::default()
     };
     let head = LogHead(Some(&run));
-    assert_eq!(head.marker().unwrap().name(), "undirected");
-    assert_eq!(LogHead(None).marker().unwrap().name(), "directional");
+    assert_eq!(head.aid().unwrap().name(), "undirected");
+    assert_eq!(LogHead(None).aid().unwrap().name(), "directional");
     let carried = Run { marker: "movable".to_owned(), ..run.clone() };
-    let moves = RecordedMarkerError::Moves(aid::named("movable").unwrap());
-    assert_eq!(LogHead(Some(&carried)).marker(), Err(moves));
+    assert_eq!(LogHead(Some(&carried)).aid().unwrap().name(), "movable");
     assert_eq!(head.settings(None).unwrap().budget.moves, Some(25));
     let unknown = Run { algorithm: "bold".to_owned(), ..run.clone() };
     assert_eq!(LogHead(Some(&unknown)).settings(None), Err("bold".to_owned()));

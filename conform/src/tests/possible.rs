@@ -1,6 +1,7 @@
 //! Visits of a laser log that the scans do not decide: what fits, and that nobody is accused on a guess.
 
 use toposlam_model::{
+    aid::AidKind,
     embedded_graph::EmbeddedGraph,
     mapping::MappingAlgorithm,
     marker::{Directional, NoMarker},
@@ -76,9 +77,9 @@ fn with_driven(
         DrivenVisits { events: timed(kinds).events, junctions }
     });
     let events = timed(kinds);
-    let states = |graph: &EmbeddedGraph| anywhere(graph, &NoMarker);
+    let states = |graph: &EmbeddedGraph| anywhere(graph, &AidKind::from(NoMarker));
     let world = world.map(|graph| KnownWorld { graph: graph.clone(), states: states(graph) });
-    let config = ConformConfig { world, marker: NoMarker, ..by_anyone() };
+    let config = ConformConfig { world, aid: NoMarker.into(), ..by_anyone() };
     let possible = PossibleVisits::judge(&events, &junctions, driven.as_ref(), &config, &());
     judged(&events, &config).with_possible(possible)
 }
@@ -155,7 +156,7 @@ fn what_a_robot_drove_may_not_fit_a_known_world_either() {
 #[test]
 fn an_algorithm_takes_one_of_the_doors_of_an_open_visit() {
     let ring = ring();
-    let states = anywhere(&ring, &Directional);
+    let states = anywhere(&ring, &AidKind::from(Directional));
     let config = |world: Option<KnownWorld>| ConformConfig {
         world,
         driver: RunDriver::from(MappingAlgorithm::Folding),
@@ -184,7 +185,7 @@ fn an_algorithm_takes_one_of_the_doors_of_an_open_visit() {
 fn a_divergence_of_a_robot_that_got_lost_leaves_the_verdict_open() {
     let fork = || bare_arrival(3, Sighting::Nothing);
     let events = bare_events([fork(), bare_door(5)]);
-    let config = ConformConfig { marker: NoMarker, ..by_anyone() };
+    let config = ConformConfig { aid: NoMarker.into(), ..by_anyone() };
     let found = judged(&events, &config);
     assert_eq!(found.verdict(), ConformVerdict::Diverged);
     let open = found.accusing_nobody(Unproved::Lost);
@@ -200,7 +201,7 @@ fn a_way_on_which_the_scanner_did_not_look_leaves_everything_open() {
     let kind = CheckedKind::Undecided(UndecidedCause::UnseenWay);
     events.events.push(CheckedEvent { kind, ..events.events[0].clone() });
     events.events.rotate_right(1);
-    let config = ConformConfig { marker: NoMarker, ..by_anyone() };
+    let config = ConformConfig { aid: NoMarker.into(), ..by_anyone() };
     let possible = PossibleVisits::judge(&events, &[], None, &config, &());
     assert_eq!((possible.fit, possible.certain), (VisitFit::UnseenWay, 0));
     found = judged(&events, &config).with_possible(possible);

@@ -2,6 +2,7 @@
 
 use toposlam_logs::{messages, reader, recorder::Recorder, topic_map::TopicMap};
 use toposlam_model::{
+    aid::AidKind,
     format::named_world::NamedWorld,
     mapping::MappedWorld,
     marker::{MarkerKind, NoMarker, Undirected},
@@ -130,8 +131,8 @@ fn a_robot_turns_back_exactly_when_its_budget_of_moves_needs_it() {
         let other = |moves| {
             let budget = RunBudget { moves: Some(moves), ..budget };
             let departure = departure(&events, &config(budget)).unwrap();
-            let [AllowedStep { door, purpose }] = departure.allowed[..] else { panic!() };
-            assert!(door.is_some() || purpose == StepPurpose::TurnBack);
+            let [AllowedStep { action, purpose }] = departure.allowed[..] else { panic!() };
+            assert!(action.is_some() || purpose == StepPurpose::TurnBack);
             (purpose == StepPurpose::TurnBack, departure.event.id)
         };
         let (early, late) = (other(most + 2), other(most - 2));
@@ -186,19 +187,19 @@ fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
     let source = LogSource { log: &log, topics: &topics, head: Some(&head), sensor: None };
     let world = NamedWorld::numbered(name, "", plan.graph().clone(), Some(facing));
     let anyone = DoorChooser::Anyone;
-    let marked: [(_, Option<MarkerKind>); 4] = [
+    let marked = [
         (DoorChooser::Algorithm(None), None),
         (anyone, None),
         (anyone, Some(NoMarker)),
         (anyone, Some(Undirected)),
     ];
-    let check = |(doors, marker), world, start, steps| {
+    let check = |(doors, marker): (_, Option<MarkerKind>), world, start, steps| {
         let check = LogCheck {
             evidence: Evidence::Scenes,
             laser: LaserParams::default(),
             world,
             start,
-            marker,
+            aid: marker.map(AidKind::from),
             assumes_marker: false,
             doors,
             search: WorldSearch { class: Class::Multigraph, max_edges: None, steps },

@@ -6,7 +6,7 @@ use std::{
 };
 
 use toposlam_model::{
-    aid::State,
+    aid::{AidAction, Places, State},
     trace::{Departure, Misfit, MisfitReason, TraceEvent, TraceEventKind, TraceOrderError},
 };
 
@@ -18,10 +18,11 @@ fn each_cause_has_a_name_and_a_class() {
     use DivergenceCause::*;
     use FaultClass::{Algorithm as Chosen, Log, Motion, Perception};
     let percept = TraceEventKind::Percept(Percept { degree: 3, sighting: Sighting::Nothing });
-    let [percept, door] = [(4, percept), (5, TraceEventKind::Door(Door(1)))]
-        .map(|(id, kind)| TraceEvent { id, kind });
+    let (door, drop) = (TraceEventKind::Door(Door(1)), TraceEventKind::Action(AidAction::Drop));
+    let [percept, door, drop] =
+        [(4, percept), (5, door), (6, drop)].map(|(id, kind)| TraceEvent { id, kind });
     let misfit = |event| {
-        let state = State { pose: Dart(0), placed: Dart(0) };
+        let state = State { pose: Dart(0), placed: Places::from_elem(Some(Dart(0)), 1) };
         let candidates = vec![(state, MisfitReason::NoSuchDoor { degree: 1 })];
         World(Misfit { event, moves: 2, candidates })
     };
@@ -45,10 +46,12 @@ fn each_cause_has_a_name_and_a_class() {
         (Driven, "driven", Perception),
         (misfit(percept), "percept", Perception),
         (misfit(door), "no-such-door", Chosen),
+        (misfit(drop), "impossible-action", Chosen),
         (NoWorld { event: percept, why }, "no-world", Perception),
         (NoWorld { event: door, why }, "no-world", Chosen),
         (departure(percept), "contradiction", Perception),
         (departure(door), "door", Chosen),
+        (departure(drop), "action", Chosen),
         (Unfinished { unexplored: 3 }, "unfinished", Chosen),
         (Map { algorithm: FOLDING }, "map", Chosen),
         (WrongMap, "wrong-map", Chosen),

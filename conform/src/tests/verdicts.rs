@@ -2,6 +2,7 @@
 //! conforms only if another walk explains it, and a log diverges only at an event that cannot be explained.
 
 use toposlam_model::{
+    aid::AidKind,
     embedded_graph::EmbeddedGraph,
     enumerate::{Each, Enumeration},
     folding::{SearchLimit, SmallestWorld},
@@ -77,7 +78,7 @@ prop_compose! {
     ) -> Options {
         let driver = if marker == RunMarker::Directional { driver } else { RunDriver::Anyone };
         let search = WorldSearch { class, max_edges, steps };
-        let config = ConformConfig { marker: marker.marker(), driver, search, dart_bound, ..without_world() };
+        let config = ConformConfig { aid: marker.marker().into(), driver, search, dart_bound, ..without_world() };
         Options { seed, junctions, world, config, bare, inferred, marker }
     }
 }
@@ -157,7 +158,7 @@ impl Options {
 
 fn trace_of(events: &RunEvents, config: &ConformConfig) -> Trace {
     let mut events = events.clone();
-    events.complete_sightings(config.marker).unwrap();
+    events.complete_sightings(config.aid).unwrap();
     events.trace().unwrap()
 }
 
@@ -261,7 +262,7 @@ proptest! {
         let [before, mut events] = [&good, &mutated].map(|log| options.recorded(log));
         events.end.as_mut().unwrap().moves = good.moves();
         // As the command does.
-        events.complete_sightings(config.marker).unwrap();
+        events.complete_sightings(config.aid).unwrap();
         let checked = match config.driver {
             RunDriver::Anyone => events.without_excursions(),
             RunDriver::Method(_) => events.clone(),
@@ -288,7 +289,7 @@ proptest! {
                         prop_assert_eq!(config.search.class, Class::Planar);
                     }
                     _ => {
-                        assert_impossible(trace, event, config.marker != NoMarker);
+                        assert_impossible(trace, event, config.aid != AidKind::from(NoMarker));
                     }
                 }
             }
@@ -306,6 +307,7 @@ proptest! {
                     }
                     // A percept that contradicts others does so in every world.
                     TraceEventKind::Percept(_) => prop_assert_eq!(witness(&cut).unwrap(), None),
+                    TraceEventKind::Action(action) => panic!("{action} with a fixed marker"),
                     TraceEventKind::Door(_) => {
                         if let RunDriver::Method(MappingMethod::By { algorithm, audits: 0 }) =
                             config.driver
@@ -360,7 +362,7 @@ proptest! {
         }
         let impossible = |kinds: &[TraceEventKind]| {
             let trace = Trace::new(kinds.to_vec()).unwrap();
-            let folded = FoldedTrace::new(&trace, Directional, Class::Multigraph);
+            let folded = FoldedTrace::new(&trace, Directional.into(), Class::Multigraph);
             (folded.impossible, trace)
         };
         prop_assert_eq!(impossible(&kinds).0, None);
@@ -374,6 +376,7 @@ proptest! {
                 };
             }
             TraceEventKind::Door(door) => door.0 = change % 5,
+            TraceEventKind::Action(action) => panic!("{action} with a fixed marker"),
         }
         if let (Some((event, _)), trace) = impossible(&kinds) {
             prop_assert!(event >= at);
@@ -429,7 +432,7 @@ fn a_loop_is_a_divergence_in_a_class_without_loops() {
         TraceEventKind::Percept(Percept { degree: 3, sighting: Sighting::Pointing(Door(door)) })
     };
     let trace = Trace::new([marked(0), TraceEventKind::Door(Door(1)), marked(1)]).unwrap();
-    let impossible = |class| FoldedTrace::new(&trace, Directional, class).impossible;
+    let impossible = |class| FoldedTrace::new(&trace, Directional.into(), class).impossible;
     assert_eq!(impossible(Class::Multigraph), None);
     for class in [Class::Simple, Class::Corridor, Class::Planar] {
         assert_eq!(impossible(class), Some((2, Impossibility::NotSimple { class })));
@@ -440,16 +443,16 @@ fn a_loop_is_a_divergence_in_a_class_without_loops() {
 fn the_marker_is_honoured_without_a_world() {
     let mut events = good_run();
     // A robot without a marker does not see one.
-    let unmarked = ConformConfig { marker: NoMarker, ..by_anyone() };
+    let unmarked = ConformConfig { aid: NoMarker.into(), ..by_anyone() };
     let found = divergence(&events, &unmarked);
     assert_eq!((found.event, found.fault), (0, FaultClass::Perception));
     let why = Impossibility::Marker;
     assert!(matches!(found.cause, DivergenceCause::NoWorld { why: found, .. } if found == why));
     // Algorithm 1 needs one.
     let error = |events: &RunEvents, config: ConformConfig| judgement(events, &config).unwrap_err();
-    let (algorithm, marker) = (MappingAlgorithm::Algorithm1, NoMarker.name());
+    let (algorithm, aid) = (MappingAlgorithm::Algorithm1, NoMarker.name());
     let by_algorithm = driven(unmarked.clone(), algorithm);
-    assert_eq!(error(&events, by_algorithm), JudgeError::Algorithm { algorithm, marker });
+    assert_eq!(error(&events, by_algorithm), JudgeError::Algorithm { algorithm, aid });
     // If the marker is not recorded, the log does not show that it was not seen.
     events.arrivals_mut().for_each(|arrival| arrival.sighting = None);
     let expected = JudgeError::Marker(SightingError::NotRecorded);
@@ -530,7 +533,8 @@ fn a_marker_that_is_not_seen_lies_behind_some_door() {
     let nothing = |degree| bare_arrival(degree, Sighting::Nothing);
     let at = |last: u32, marker: MarkerKind| {
         let walk = [nothing(1), bare_door(0), nothing(last)];
-        let judged = judged(&bare_events(walk), &ConformConfig { marker, ..by_anyone() });
+        let judged =
+            judged(&bare_events(walk), &ConformConfig { aid: marker.into(), ..by_anyone() });
         judged.divergence.as_ref().map(place_of)
     };
     for marker in [Directional, Undirected] {

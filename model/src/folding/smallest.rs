@@ -70,6 +70,8 @@ pub enum SearchLimit {
     Steps,
     Decisions,
     Stopped,
+    /// The robot's marking aid moves: such worlds are not searched.
+    Aid,
 }
 
 /// Finds the world of a class with the fewest edges that explains the walk of a trail: a robot from some

@@ -277,7 +277,9 @@ impl MapWalk {
 
     /// The purpose of a step that explores an edge; without one, of the end of the run.
     pub(super) fn purpose(&self, edge: Option<Dart>) -> StepPurpose {
-        edge.map_or(StepPurpose::Done, |edge| StepPurpose::Explore(MapDart::new(&self.map, edge)))
+        edge.map_or(StepPurpose::Complete, |edge| {
+            StepPurpose::Follow(MapDart::new(&self.map, edge))
+        })
     }
 
     /// The darts of a shortest path from the robot's vertex to a known one.

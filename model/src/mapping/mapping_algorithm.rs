@@ -147,14 +147,13 @@ impl fmt::Display for MappingAlgorithm {
     }
 }
 
-/// From the name of an algorithm of a robot that cannot carry its marker.
 impl FromStr for MappingAlgorithm {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        Self::with_fixed_marker().find(|algorithm| algorithm.name() == name).ok_or_else(|| {
-            let names: Vec<_> = Self::with_fixed_marker().map(Self::name).collect();
-            format!("`{name}` is not {}", names.join(" or "))
+        Self::all().find(|algorithm| algorithm.name() == name).ok_or_else(|| {
+            let names: Vec<_> = Self::all().map(Self::name).collect();
+            format!("`{name}` is no algorithm; they are {}", names.join(", "))
         })
     }
 }

@@ -141,6 +141,12 @@ pub enum StepPurpose {
     /// to return.
     Try(MapDart),
     Done,
+    /// An explorer begins.
+    Begin,
+    /// An explorer whose marking aid moves goes to an unexplored dart, and over its edge.
+    Follow(MapDart),
+    /// The map of such an explorer is complete.
+    Complete,
     ExploreOpen(MapDart),
     Test {
         edge: MapDart,
@@ -170,6 +176,9 @@ impl fmt::Display for StepPurpose {
             Self::Explore(dart) => write!(out, "line 5: explores the unexplored {dart}"),
             Self::Try(dart) => write!(out, "line 9: tests whether it arrived by {dart}"),
             Self::Done => write!(out, "line 4: the map is complete"),
+            Self::Begin => write!(out, "begins"),
+            Self::Follow(dart) => write!(out, "follows the unexplored {dart}"),
+            Self::Complete => write!(out, "the map is complete"),
             Self::ExploreOpen(dart) => write!(out, "explores the open {dart}"),
             Self::Test { edge, hypothesis } => {
                 write!(out, "tests whether {edge} leads to {hypothesis}")

@@ -232,11 +232,12 @@ mod tests {
             "folding audits=1",
             "folding recovering audits=1",
             "folding recovering retrying audits=2",
+            "movable",
+            "team-2-round",
         ] {
             assert_eq!(name.parse::<MappingMethod>().unwrap().to_string(), name);
         }
         for (name, error) in [
-            ("depth-first", "`depth-first` is not algorithm1 or folding"),
             ("folding slowly", "`slowly` does not follow the name of an algorithm"),
             ("algorithm1 recovering", "`recovering` does not follow the name of an algorithm"),
             ("folding retrying", "`retrying` does not follow the name of an algorithm"),
@@ -244,6 +245,10 @@ mod tests {
         ] {
             assert_eq!(name.parse::<MappingMethod>(), Err(error.to_owned()));
         }
+        let unknown = "depth-first".parse::<MappingMethod>().unwrap_err();
+        assert!(
+            unknown.starts_with("`depth-first` is no algorithm; they are algorithm1, folding,")
+        );
     }
 
     /// A robot that is carried after a move, to this pose. It measures the hallways, of which each has another

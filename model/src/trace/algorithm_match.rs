@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::{
-    AlgorithmCoverage, Trace, TraceWorld, TraceWorldError,
+    AlgorithmCoverage, Trace, TracePosition, TraceWorld, TraceWorldError,
     choice_search::{Search, TraceClaim},
     match_end::{Departure, MatchEnd, RunStop},
 };
@@ -87,8 +87,8 @@ pub fn match_audited(
     }
     let audited = audit_times(audits, &mut world, &run, |_, _| {});
     let stop = match audited {
-        Ok(_) => RunStop::after_end(world.moves(), StepPurpose::Audited, trace),
-        Err(error) => Some(RunStop::new(&error, world.moves(), StepPurpose::Audit)),
+        Ok(_) => RunStop::after_end(world.position(), StepPurpose::Audited, trace),
+        Err(error) => Some(RunStop::new(&error, world.position(), StepPurpose::Audit)),
     };
     let reached = MatchEnd::of_only_run(stop, algorithm, trace);
     AlgorithmMatch { algorithm, choices: MatchedChoices::Default, reached, run, coverage }
@@ -99,7 +99,7 @@ pub fn match_audited(
 struct DefaultRun<E> {
     explorer: E,
     coverage: AlgorithmCoverage,
-    moves: usize,
+    position: TracePosition,
     has_begun: bool,
     /// That of the last step.
     purpose: StepPurpose,
@@ -108,8 +108,8 @@ struct DefaultRun<E> {
 impl<E: Explorer> DefaultRun<E> {
     fn new(mut explorer: E, bound: usize) -> Self {
         explorer.limit_darts(bound);
-        let (coverage, purpose) = (AlgorithmCoverage::default(), explorer.purpose(None));
-        Self { explorer, coverage, moves: 0, has_begun: false, purpose }
+        let (coverage, purpose) = (AlgorithmCoverage::default(), StepPurpose::Begin);
+        Self { explorer, coverage, position: TracePosition::default(), has_begun: false, purpose }
     }
 
     /// Goes on until an error or the end, and returns the state before the last step, if it is kept.
@@ -123,7 +123,7 @@ impl<E: Explorer> DefaultRun<E> {
             if is_kept {
                 before = Some(self.clone());
             }
-            let mut world = TraceWorld::after(trace, self.moves);
+            let mut world = TraceWorld::at(trace, self.position);
             let observed = &mut Observed::new(&mut world, &mut self.coverage);
             let stepped = if self.has_begun {
                 match self.explorer.choose() {
@@ -138,7 +138,7 @@ impl<E: Explorer> DefaultRun<E> {
                 self.has_begun = true;
                 self.explorer.begin(observed)
             };
-            self.moves = world.moves();
+            self.position = world.position();
             if stepped.is_err() {
                 return (stepped, before);
             }
@@ -160,20 +160,22 @@ fn match_default<E: Explorer + Into<MapWalk>>(
     let reached = loop {
         let (ended, before) = run.match_trace(&trace, amend.is_some());
         let stop = match ended {
-            Ok(()) => RunStop::after_end(run.moves, run.explorer.purpose(None), &trace),
-            Err(error) => Some(RunStop::new(&error, run.moves, run.purpose)),
+            Ok(()) => RunStop::after_end(run.position, run.explorer.purpose(None), &trace),
+            Err(error) => Some(RunStop::new(&error, run.position, run.purpose)),
         };
         let reached = MatchEnd::of_only_run(stop, algorithm, &trace);
         let amended = match (&reached, &mut amend) {
-            (MatchEnd::Departure(departure), Some(amend)) if run.moves >= amended_before => {
+            (MatchEnd::Departure(departure), Some(amend))
+                if run.position.moves >= amended_before =>
+            {
                 amend(departure)
             }
             _ => None,
         };
         let (Some(percept), Some(before)) = (amended, before) else { break reached };
-        trace.to_mut().percepts[run.moves] = percept;
+        trace.to_mut().percepts[run.position.moves] = percept;
         // No percept is replaced twice.
-        amended_before = run.moves + 1;
+        amended_before = run.position.moves + 1;
         run = before;
     };
     let (choices, coverage) = (MatchedChoices::Default, AlgorithmCoverage::default());
@@ -194,7 +196,7 @@ fn match_choices(
     let (run, found) = loop {
         let (run, before) = default.match_trace(&trace, amend.is_some());
         let reached = match &run {
-            Ok(()) if default.moves == trace.doors().len() => Some(MatchEnd::Mapped),
+            Ok(()) if default.position.moves == trace.doors().len() => Some(MatchEnd::Mapped),
             Err(MappingError::World(TraceWorldError::End)) => Some(MatchEnd::EndOfTrace),
             _ => None,
         };
@@ -229,7 +231,7 @@ fn match_choices(
         amended_before = WalkEvent::Door(search.farthest().moves());
         default = before;
     };
-    let (trace, moves) = (&*trace, default.moves);
+    let (trace, moves) = (&*trace, default.position.moves);
     // If the default choices match the whole trace, they differ after its end.
     let from = match run {
         Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => {

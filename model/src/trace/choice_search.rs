@@ -3,7 +3,7 @@
 use std::{collections::HashSet, mem};
 
 use super::{
-    Trace, TraceWorld,
+    Trace, TracePosition, TraceWorld,
     match_end::{AllowedStep, Departure, MatchEnd, RunStop},
 };
 use crate::{
@@ -91,7 +91,10 @@ impl Search {
         let begun = exploration.begin(&mut TraceWorld::after(trace, 0));
         let way = Way { exploration, moves: 0, script: Vec::new() };
         if let Err(error) = begun {
-            self.ended(RunStop::new(&error, 0, StepPurpose::Done), way.script);
+            self.ended(
+                RunStop::new(&error, TracePosition::default(), StepPurpose::Done),
+                way.script,
+            );
             return None;
         }
         self.search(trace, vec![way])
@@ -118,7 +121,7 @@ impl Search {
                 if way.moves == trace.doors().len() {
                     return Some((MatchEnd::Mapped, way.script));
                 }
-                let allowed = AllowedStep { door: None, purpose: StepPurpose::Done };
+                let allowed = AllowedStep { action: None, purpose: StepPurpose::Done };
                 let event = WalkEvent::Door(way.moves);
                 self.ended(RunStop::Departure { event, allowed }, way.script.clone());
             }
@@ -149,7 +152,7 @@ impl Search {
             let stepped = way.exploration.step(choice, &mut world);
             way.moves = world.moves();
             if let Err(error) = stepped {
-                let stop = RunStop::new(&error, way.moves, purpose);
+                let stop = RunStop::new(&error, world.position(), purpose);
                 self.ended(stop, way.script);
                 if let RunStop::Departure { event, allowed } = stop
                     && let (StepPurpose::Contradicted(_), true) =
@@ -180,6 +183,12 @@ impl Search {
                 if self.bound.as_ref().is_none_or(|(farthest, _)| event > *farthest) {
                     self.bound = Some((event, script));
                 }
+            }
+            // Algorithm 1 does nothing with its marker: it takes a door.
+            RunStop::AtAction { position, allowed }
+            | RunStop::AfterAction { position, allowed } => {
+                let event = WalkEvent::Door(position.moves);
+                self.ended(RunStop::Departure { event, allowed }, script);
             }
             RunStop::Departure { event, allowed } => {
                 if self.allowed.is_empty() || event > self.farthest {

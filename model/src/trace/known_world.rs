@@ -2,33 +2,32 @@
 
 use super::{Trace, TraceEvent, TraceEventKind};
 use crate::{
-    aid::{RefusedAction, State},
-    embedded_graph::EmbeddedGraph,
-    marker::Marker,
+    aid::{Action, Aid, RefusedAction, State},
+    embedded_graph::{Dart, EmbeddedGraph},
     percept::{Percept, WalkEvent},
-    world::{GraphWorld, World},
+    world::GraphWorld,
 };
 
-/// The possible states of a robot in a known world, event by event.
+/// The possible states of a robot in a known world, event by event. `P` is the state of its marking aid.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Poses {
-    /// The number of states after each event that fits.
+pub struct Poses<P = Dart> {
+    /// The number of states after each percept and each door that fits.
     pub left: Vec<usize>,
-    /// The state after each such event, if there is only one.
-    pub alone: Vec<Option<State>>,
+    /// The pose after each of them, if there is only one state.
+    pub alone: Vec<Option<Dart>>,
     /// The states after the last event that fits.
-    pub states: Vec<State>,
-    pub misfit: Option<Misfit>,
+    pub states: Vec<State<P>>,
+    pub misfit: Option<Misfit<P>>,
 }
 
 /// An event that fits no possible state.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Misfit {
+pub struct Misfit<P = Dart> {
     pub event: TraceEvent,
     /// The number of moves before it.
     pub moves: usize,
     /// The possible states before it (for a percept, after the move), and why the event does not fit each.
-    pub candidates: Vec<(State, MisfitReason)>,
+    pub candidates: Vec<(State<P>, MisfitReason)>,
 }
 
 /// Why an event does not fit a state.
@@ -36,94 +35,103 @@ pub struct Misfit {
 pub enum MisfitReason {
     Percept { expected: Percept },
     NoSuchDoor { degree: u32 },
+    Refused(RefusedAction),
 }
 
-/// The states of a robot that has just put its marker down along its entry dart, at every dart.
-pub fn anywhere(graph: &EmbeddedGraph, marker: &impl Marker) -> Vec<State> {
-    let start = |facing| GraphWorld::with_aid(graph, marker, facing).state();
+/// The states of a robot that has just put its aid down along its entry dart, at every dart.
+pub fn anywhere<A: Aid>(graph: &EmbeddedGraph, aid: &A) -> Vec<State<A::Placed>> {
+    let start = |pose| State { pose, placed: aid.placed(graph, pose) };
     graph.darts().map(start).collect()
 }
 
 /// Follows a trace in a known world from all possible start states.
-pub fn poses(
+pub fn poses<A: Aid + Copy>(
     graph: &EmbeddedGraph,
-    marker: &impl Marker,
-    starts: &[State],
+    aid: &A,
+    starts: &[State<A::Placed>],
     trace: &Trace,
-) -> Poses {
-    poses_amended(graph, marker, starts, trace, |_| None)
+) -> Poses<A::Placed> {
+    poses_amended(graph, aid, starts, trace, |_| None)
 }
 
 /// Follows a trace in a known world. At a percept that fits no state, `amend` may return the percept that
 /// takes its place; it must be one that a candidate expects.
-pub fn poses_amended(
+pub fn poses_amended<A: Aid + Copy>(
     graph: &EmbeddedGraph,
-    marker: &impl Marker,
-    starts: &[State],
+    aid: &A,
+    starts: &[State<A::Placed>],
     trace: &Trace,
-    mut amend: impl FnMut(&Misfit) -> Option<Percept>,
-) -> Poses {
+    mut amend: impl FnMut(&Misfit<A::Placed>) -> Option<Percept>,
+) -> Poses<A::Placed> {
     let mut states = starts.to_vec();
     let mut left = Vec::with_capacity(trace.len());
     let mut alone = Vec::with_capacity(trace.len());
-    for (index, event) in trace.events().enumerate() {
-        let at = WalkEvent::at(index);
-        if matches!(at, WalkEvent::Percept(number) if trace.is_relocation(number)) {
+    let mut moves = 0;
+    for (at, event) in trace.events() {
+        moves = at.map_or(moves, WalkEvent::moves);
+        if matches!(at, Some(WalkEvent::Percept(number)) if trace.is_relocation(number)) {
             states = relocated(graph, &states);
         }
-        let judged = |&state: &State| (state, after(graph, marker, state, event.kind));
-        let judged: Vec<_> = states.iter().map(judged).collect();
-        let mut fit: Vec<State> = judged.iter().filter_map(|(_, after)| after.ok()).collect();
+        let (mut fit, mut candidates) = (Vec::new(), Vec::new());
+        for state in &states {
+            match after(graph, aid, state, event.kind) {
+                Ok(after) => fit.push(after),
+                Err(why) => candidates.push((state.clone(), why)),
+            }
+        }
         if fit.is_empty() {
-            let why =
-                |(state, after): (State, Result<State, MisfitReason>)| Some((state, after.err()?));
-            let candidates = judged.into_iter().filter_map(why).collect();
-            let misfit = Misfit { event, moves: at.moves(), candidates };
+            let misfit = Misfit { event, moves, candidates };
             if let Some(expected) = amend(&misfit) {
-                let expects =
-                    |(_, why): &&(State, MisfitReason)| *why == MisfitReason::Percept { expected };
-                fit = misfit.candidates.iter().filter(expects).map(|&(state, _)| state).collect();
+                let expects = |(_, why): &&(State<A::Placed>, MisfitReason)| {
+                    *why == MisfitReason::Percept { expected }
+                };
+                let expecting = misfit.candidates.iter().filter(expects);
+                fit = expecting.map(|(state, _)| state.clone()).collect();
             }
             if fit.is_empty() {
                 return Poses { left, alone, states, misfit: Some(misfit) };
             }
         }
-        left.push(fit.len());
-        alone.push(if let [state] = fit[..] { Some(state) } else { None });
+        if at.is_some() {
+            left.push(fit.len());
+            alone.push(if let [state] = &fit[..] { Some(state.pose) } else { None });
+        }
         states = fit;
     }
     Poses { left, alone, states, misfit: None }
 }
 
-/// The states of a robot that got lost: it may be anywhere, with its marker where it was.
-fn relocated(graph: &EmbeddedGraph, states: &[State]) -> Vec<State> {
-    let mut placed: Vec<_> = states.iter().map(|state| state.placed).collect();
+/// The states of a robot that got lost: it may be anywhere, with its aid as it was.
+fn relocated<P: Clone + Ord>(graph: &EmbeddedGraph, states: &[State<P>]) -> Vec<State<P>> {
+    let mut placed: Vec<_> = states.iter().map(|state| state.placed.clone()).collect();
     placed.sort_unstable();
     placed.dedup();
-    let everywhere = |placed| graph.darts().map(move |pose| State { pose, placed });
+    let everywhere =
+        |placed: P| graph.darts().map(move |pose| State { pose, placed: placed.clone() });
     placed.into_iter().flat_map(everywhere).collect()
 }
 
 /// The state after an event, if the event fits.
-fn after(
+fn after<A: Aid + Copy>(
     graph: &EmbeddedGraph,
-    marker: &impl Marker,
-    state: State,
+    aid: &A,
+    state: &State<A::Placed>,
     event: TraceEventKind,
-) -> Result<State, MisfitReason> {
-    let mut world = GraphWorld::with_aid(graph, marker, state.placed).at(state);
-    match event {
+) -> Result<State<A::Placed>, MisfitReason> {
+    let mut world = GraphWorld::in_state(graph, *aid, state.clone());
+    let action = match event {
         TraceEventKind::Percept(percept) => {
             let expected = world.sensed();
-            if percept == expected { Ok(state) } else { Err(MisfitReason::Percept { expected }) }
+            let fits = percept == expected;
+            return if fits { Ok(world.state()) } else { Err(MisfitReason::Percept { expected }) };
         }
-        TraceEventKind::Door(door) => match world.traverse(door) {
-            Ok(()) => Ok(world.state()),
-            Err(RefusedAction::NoSuchDoor { degree, .. }) => {
-                Err(MisfitReason::NoSuchDoor { degree })
-            }
-            Err(_) => Ok(state),
-        },
+        TraceEventKind::Action(action) => Action::Do(action),
+        TraceEventKind::Door(door) => Action::Take(door),
+    };
+    match world.act(action) {
+        Ok(()) => Ok(world.state()),
+        Err(RefusedAction::NoSuchDoor { degree, .. }) => Err(MisfitReason::NoSuchDoor { degree }),
+        Err(refused) => Err(MisfitReason::Refused(refused)),
     }
 }
 

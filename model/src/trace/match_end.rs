@@ -3,10 +3,11 @@
 
 use std::fmt;
 
-use super::{Trace, TraceEvent, TraceWorldError};
+use super::{Trace, TraceEvent, TracePosition, TraceWorldError};
 use crate::{
+    aid::Action,
     mapping::{MappingAlgorithm, MappingError, StepPurpose},
-    percept::{Door, WalkEvent},
+    percept::WalkEvent,
 };
 
 /// How far an algorithm follows a trace.
@@ -14,14 +15,12 @@ use crate::{
 pub enum MatchEnd {
     /// To the end of both: the map is complete.
     Mapped,
+    /// To its end, or to a percept that is not recorded.
     EndOfTrace,
     /// To an event that it does not have.
     Departure(Departure),
     /// To an event at which it would know more darts than a bound allows. What follows is not matched.
-    Bound {
-        event: TraceEvent,
-        bound: usize,
-    },
+    Bound { event: TraceEvent, bound: usize },
 }
 
 /// The first event of a trace that no run of an algorithm has.
@@ -36,16 +35,16 @@ pub struct Departure {
 /// What an algorithm does instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AllowedStep {
-    pub door: Option<Door>,
+    pub action: Option<Action>,
     pub purpose: StepPurpose,
 }
 
 impl fmt::Display for AllowedStep {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        if let Some(door) = self.door {
-            write!(out, "door {} ({})", door.0, self.purpose)
-        } else {
-            write!(out, "{}", self.purpose)
+        match self.action {
+            Some(Action::Take(door)) => write!(out, "door {} ({})", door.0, self.purpose),
+            Some(Action::Do(action)) => write!(out, "{action} ({})", self.purpose),
+            None => write!(out, "{}", self.purpose),
         }
     }
 }
@@ -59,6 +58,16 @@ pub(super) enum RunStop {
         event: WalkEvent,
         allowed: AllowedStep,
     },
+    /// The run has something else than the next action with the marking aid.
+    AtAction {
+        position: TracePosition,
+        allowed: AllowedStep,
+    },
+    /// The run contradicts what was perceived after the last action with the marking aid.
+    AfterAction {
+        position: TracePosition,
+        allowed: AllowedStep,
+    },
     /// What the run would do after this event is not known.
     Bound {
         event: WalkEvent,
@@ -67,24 +76,33 @@ pub(super) enum RunStop {
 }
 
 impl RunStop {
-    /// Why a step with a purpose failed, after some moves.
+    /// Why a step with a purpose failed, where it did.
     pub(super) fn new(
         error: &MappingError<TraceWorldError>,
-        moves: usize,
+        position: TracePosition,
         purpose: StepPurpose,
     ) -> Self {
+        let moves = position.moves;
         let event = WalkEvent::Percept(moves);
-        let contradicted =
-            |purpose| Self::Departure { event, allowed: AllowedStep { door: None, purpose } };
+        let contradicted = |purpose| {
+            let allowed = AllowedStep { action: None, purpose };
+            match position.actions {
+                0 => Self::Departure { event, allowed },
+                _ => Self::AfterAction { position, allowed },
+            }
+        };
         match error {
             MappingError::World(TraceWorldError::End) => Self::EndOfTrace,
             MappingError::World(TraceWorldError::Lost) => {
-                let allowed = AllowedStep { door: None, purpose: StepPurpose::Lost };
+                let allowed = AllowedStep { action: None, purpose: StepPurpose::Lost };
                 Self::Departure { event: WalkEvent::Percept(moves + 1), allowed }
             }
-            MappingError::World(TraceWorldError::Door { asked, .. }) => {
-                let allowed = AllowedStep { door: Some(*asked), purpose };
-                Self::Departure { event: WalkEvent::Door(moves), allowed }
+            MappingError::World(TraceWorldError::Action { recorded, asked }) => {
+                let allowed = AllowedStep { action: Some(*asked), purpose };
+                match recorded {
+                    Action::Take(_) => Self::Departure { event: WalkEvent::Door(moves), allowed },
+                    Action::Do(_) => Self::AtAction { position, allowed },
+                }
             }
             MappingError::Contradiction(contradiction) => {
                 contradicted(StepPurpose::Contradicted(*contradiction))
@@ -95,9 +113,17 @@ impl RunStop {
         }
     }
 
-    /// At the end of a run, after some moves, with a purpose; `None` if the trace ends, too.
-    pub(super) fn after_end(moves: usize, purpose: StepPurpose, trace: &Trace) -> Option<Self> {
-        let allowed = AllowedStep { door: None, purpose };
+    /// At the end of a run, with a purpose; `None` if the trace ends, too.
+    pub(super) fn after_end(
+        position: TracePosition,
+        purpose: StepPurpose,
+        trace: &Trace,
+    ) -> Option<Self> {
+        let TracePosition { moves, actions } = position;
+        let allowed = AllowedStep { action: None, purpose };
+        if actions < trace.actions_after(moves).len() {
+            return Some(Self::AtAction { position, allowed });
+        }
         let stop = Self::Departure { event: WalkEvent::Door(moves), allowed };
         (moves != trace.doors().len()).then_some(stop)
     }
@@ -116,6 +142,19 @@ impl MatchEnd {
             Some(RunStop::EndOfTrace) => Self::EndOfTrace,
             Some(RunStop::Departure { event, allowed }) => {
                 Self::Departure(Departure { algorithm, event: at(event), allowed: vec![allowed] })
+            }
+            Some(RunStop::AtAction { position, allowed }) => {
+                let TracePosition { moves, actions } = position;
+                let done = trace.actions_after(moves).get(actions).map(|action| action.event());
+                let event = done.unwrap_or_else(|| at(WalkEvent::Door(moves)));
+                Self::Departure(Departure { algorithm, event, allowed: vec![allowed] })
+            }
+            Some(RunStop::AfterAction { position, allowed }) => {
+                let TracePosition { moves, actions } = position;
+                let done = trace.actions_after(moves).iter().take(actions);
+                let seen = done.rev().find_map(|action| action.percept_event());
+                let event = seen.unwrap_or_else(|| at(WalkEvent::Percept(moves)));
+                Self::Departure(Departure { algorithm, event, allowed: vec![allowed] })
             }
             Some(RunStop::Bound { event, bound }) => Self::Bound { event: at(event), bound },
         }

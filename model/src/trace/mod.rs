@@ -22,18 +22,24 @@ pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses, poses_amende
 pub use match_end::{AllowedStep, Departure, MatchEnd};
 pub use recovery_match::{RecordedVisit, match_recovering};
 pub use shorten::shortened;
-pub use trace_world::{TraceWorld, TraceWorldError};
+pub use trace_world::{TracePosition, TraceWorld, TraceWorldError};
 
-use crate::percept::{Door, Percept, WalkEvent};
+use crate::{
+    aid::AidAction,
+    percept::{Door, Percept, WalkEvent},
+};
 
-/// What a robot perceived and the doors that it took, in turn, beginning with the percept at the start. A robot that
-/// got lost and [recovers](crate::mapping::Relocate) may have come to a vertex by any way.
+/// What a robot perceived and the doors that it took, in turn, beginning with the percept at the start, and what it did with
+/// its marking aid in between. A robot that got lost and [recovers](crate::mapping::Relocate) may have come to a vertex by
+/// any way.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trace {
     percepts: Vec<Percept>,
     doors: Vec<Door>,
-    /// Of each event.
+    /// Of each percept and door.
     ids: Vec<usize>,
+    /// In order.
+    actions: Vec<TraceAction>,
     /// The percepts at vertices to which the robot came after it got lost, in order.
     relocations: Vec<usize>,
 }
@@ -49,7 +55,42 @@ pub struct TraceEvent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceEventKind {
     Percept(Percept),
+    /// Something with the marking aid.
+    Action(AidAction),
     Door(Door),
+}
+
+/// What a robot did with its marking aid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TraceAction {
+    /// After how many moves.
+    pub moves: usize,
+    pub action: AidAction,
+    /// What it then perceived where it stands, if that is recorded, and the id of the event.
+    then: Option<(Percept, usize)>,
+    /// As of [`TraceEvent::id`].
+    id: usize,
+}
+
+impl TraceAction {
+    pub fn event(self) -> TraceEvent {
+        TraceEvent { id: self.id, kind: TraceEventKind::Action(self.action) }
+    }
+
+    /// What the robot then perceived where it stands, if that is recorded.
+    pub fn percept(self) -> Option<Percept> {
+        self.then.map(|(percept, _)| percept)
+    }
+
+    /// The event of what the robot then perceived.
+    pub fn percept_event(self) -> Option<TraceEvent> {
+        self.then.map(|(percept, id)| TraceEvent { id, kind: TraceEventKind::Percept(percept) })
+    }
+
+    /// The action, and what was perceived after it.
+    fn events(self) -> impl Iterator<Item = TraceEvent> {
+        [self.event()].into_iter().chain(self.percept_event())
+    }
 }
 
 /// Events that do not alternate.
@@ -61,6 +102,10 @@ pub enum TraceOrderError {
     NoDoor { event: usize },
     #[error("a door follows a door: nothing was perceived in between")]
     NoPercept { event: usize },
+    #[error(
+        "the robot did something with its marking aid before anything was perceived where it was"
+    )]
+    ActionOnTheWay { event: usize },
 }
 
 impl Trace {
@@ -80,16 +125,37 @@ impl Trace {
     pub fn from_events(
         events: impl IntoIterator<Item = TraceEvent>,
     ) -> Result<Self, TraceOrderError> {
-        let (percepts, doors) = (Vec::new(), Vec::new());
-        let mut trace = Self { percepts, doors, ids: Vec::new(), relocations: Vec::new() };
+        let mut trace = Self {
+            percepts: Vec::new(),
+            doors: Vec::new(),
+            ids: Vec::new(),
+            actions: Vec::new(),
+            relocations: Vec::new(),
+        };
         for TraceEvent { id, kind } in events {
             let standing = trace.percepts.len() > trace.doors.len();
+            let moves = trace.doors.len();
+            let acted = trace.actions.last_mut().filter(|it| standing && it.moves == moves);
             match kind {
+                TraceEventKind::Percept(percept)
+                    if let Some(acted) = acted
+                        && acted.then.is_none() =>
+                {
+                    acted.then = Some((percept, id));
+                    continue;
+                }
                 TraceEventKind::Percept(_) if standing => {
                     return Err(TraceOrderError::NoDoor { event: id });
                 }
                 TraceEventKind::Door(_) if !standing => {
                     return Err(TraceOrderError::NoPercept { event: id });
+                }
+                TraceEventKind::Action(_) if !standing => {
+                    return Err(TraceOrderError::ActionOnTheWay { event: id });
+                }
+                TraceEventKind::Action(action) => {
+                    trace.actions.push(TraceAction { moves, action, then: None, id });
+                    continue;
                 }
                 TraceEventKind::Percept(percept) => trace.percepts.push(percept),
                 TraceEventKind::Door(door) => trace.doors.push(door),
@@ -138,17 +204,39 @@ impl Trace {
         }
     }
 
-    /// The number of events; never 0.
+    /// The number of percepts and doors; never 0.
     #[expect(clippy::len_without_is_empty, reason = "it is never empty")]
     pub fn len(&self) -> usize {
         self.ids.len()
     }
 
-    pub fn events(&self) -> impl Iterator<Item = TraceEvent> + '_ {
-        (0..self.len()).map(|index| self.event(index))
+    /// The percepts on arrival and the doors, with what they are of the walk, and the actions with what was perceived after
+    /// each.
+    pub fn events(&self) -> impl Iterator<Item = (Option<WalkEvent>, TraceEvent)> + '_ {
+        (0..self.len()).flat_map(|index| {
+            let at = WalkEvent::at(index);
+            let actions = match at {
+                WalkEvent::Percept(moves) => self.actions_after(moves),
+                WalkEvent::Door(_) => &[],
+            };
+            let actions = actions.iter().flat_map(|action| action.events());
+            let actions = actions.map(|event| (None, event));
+            std::iter::once((Some(at), self.event(index))).chain(actions)
+        })
     }
 
-    /// The percepts: at the start, and after each move.
+    /// What the robot did with its marking aid, in order.
+    pub fn actions(&self) -> &[TraceAction] {
+        &self.actions
+    }
+
+    /// What the robot did with its marking aid after some moves, before the next one.
+    pub fn actions_after(&self, moves: usize) -> &[TraceAction] {
+        let before = |moves| self.actions.partition_point(|action| action.moves < moves);
+        &self.actions[before(moves)..before(moves + 1)]
+    }
+
+    /// The percepts on arrival: at the start, and after each move.
     pub fn percepts(&self) -> &[Percept] {
         &self.percepts
     }
@@ -157,7 +245,7 @@ impl Trace {
         &self.doors
     }
 
-    /// The trace up to and including an event.
+    /// The trace up to and including a percept or door.
     #[must_use]
     pub fn up_to(&self, index: usize) -> Self {
         let (percepts, doors) = match WalkEvent::at(index) {
@@ -165,10 +253,13 @@ impl Trace {
             WalkEvent::Door(moves) => (moves + 1, moves + 1),
         };
         let (percepts, doors) = (self.percepts.len().min(percepts), self.doors.len().min(doors));
+        // Those after the last percept are before its door.
+        let actions = self.actions.iter().filter(|action| action.moves < doors);
         Self {
             percepts: self.percepts[..percepts].to_vec(),
             doors: self.doors[..doors].to_vec(),
             ids: self.ids[..percepts + doors].to_vec(),
+            actions: actions.copied().collect(),
             relocations: self.relocations_below(percepts).to_vec(),
         }
     }
@@ -178,7 +269,7 @@ impl Trace {
         &self.relocations[..self.relocations.partition_point(|&one| one < percept)]
     }
 
-    /// An event by its index; the last one if there are fewer.
+    /// A percept or door by its index; the last one if there are fewer.
     pub fn event(&self, index: usize) -> TraceEvent {
         let index = index.min(self.len() - 1);
         let kind = match WalkEvent::at(index) {
@@ -198,7 +289,7 @@ impl Trace {
         self.event(WalkEvent::Door(moves).index())
     }
 
-    /// The index of the first event with this id or a larger one.
+    /// The index of the first percept or door with this id or a larger one.
     pub fn index_of(&self, id: usize) -> usize {
         self.ids.partition_point(|&one| one < id)
     }
@@ -212,7 +303,13 @@ impl Trace {
         let (before, left_out) = (self.relocations_below(from), self.relocations_below(to).len());
         let after = self.relocations[left_out..].iter().map(|percept| percept - (to - from));
         let relocations = before.iter().copied().chain(after).collect();
-        Self { percepts, doors, ids, relocations }
+        let is_left = |action: &&TraceAction| !(from..to).contains(&action.moves);
+        let moved = |action: &TraceAction| {
+            let left_out = if action.moves < to { 0 } else { to - from };
+            TraceAction { moves: action.moves - left_out, ..*action }
+        };
+        let actions = self.actions.iter().filter(is_left).map(moved).collect();
+        Self { percepts, doors, ids, actions, relocations }
     }
 }
 
@@ -247,7 +344,7 @@ pub(crate) mod tests {
     ) -> Trace {
         let (percepts, doors) = walk(world, turns);
         let ids = (0..percepts.len() + doors.len()).collect();
-        Trace { percepts, doors, ids, relocations: Vec::new() }
+        Trace { percepts, doors, ids, actions: Vec::new(), relocations: Vec::new() }
     }
 
     /// What a robot perceives on a walk from a start.
@@ -309,11 +406,45 @@ pub(crate) mod tests {
         for length in 1..=whole.len() {
             let trace = trace(&whole[..length]).unwrap();
             assert_eq!(trace.len(), length);
-            assert_eq!(trace.events().map(|event| event.kind).collect::<Vec<_>>(), whole[..length]);
+            assert_eq!(
+                trace.events().map(|(_, event)| event.kind).collect::<Vec<_>>(),
+                whole[..length]
+            );
             for event in 0..length {
                 assert_eq!(trace.up_to(event).len(), event + 1);
                 assert_eq!((trace.event(event).id, trace.index_of(event)), (event, event));
             }
+        }
+    }
+
+    #[test]
+    fn actions_stay_with_their_percepts() {
+        let percept = TraceEventKind::Percept(Percept { degree: 2, sighting: Sighting::Nothing });
+        let door = TraceEventKind::Door(Door::BACK);
+        let [drop, pick_up] = [AidAction::Drop, AidAction::PickUp].map(TraceEventKind::Action);
+        let on_the_way = Trace::new([percept, door, drop]);
+        assert_eq!(on_the_way, Err(TraceOrderError::ActionOnTheWay { event: 2 }));
+        let whole = [percept, pick_up, drop, door, percept, pick_up, door, percept, drop];
+        let trace = Trace::new(whole).unwrap();
+        assert_eq!(trace.events().map(|(_, event)| event.kind).collect::<Vec<_>>(), whole);
+        let walk: Vec<_> = trace.events().filter_map(|(at, _)| at).map(WalkEvent::index).collect();
+        assert_eq!(walk, [0, 1, 2, 3, 4]);
+        assert_eq!(
+            trace.events().map(|(_, event)| event.id).collect::<Vec<_>>(),
+            [0, 1, 2, 3, 4, 5, 6, 7, 8]
+        );
+        // A percept after an action is not one on arrival; two in a row are none.
+        let seen = [percept, drop, percept, door, percept];
+        let seen_after = Trace::new(seen).unwrap();
+        assert_eq!(seen_after.events().map(|(_, event)| event.kind).collect::<Vec<_>>(), seen);
+        assert_eq!((seen_after.percepts().len(), seen_after.len()), (2, 3));
+        let twice = Trace::new([percept, drop, percept, percept]);
+        assert_eq!(twice, Err(TraceOrderError::NoDoor { event: 3 }));
+        let kinds = |trace: &Trace| trace.actions().iter().map(|one| one.moves).collect::<Vec<_>>();
+        // What was done after a percept is before its door.
+        assert_eq!([2, 3, 4].map(|index| kinds(&trace.up_to(index)).len()), [2, 3, 3]);
+        for (from, to, left) in [(0, 1, &[0, 1][..]), (1, 2, &[0, 0, 1]), (0, 2, &[0])] {
+            assert_eq!(kinds(&trace.without(from, to)), left, "{from}..{to}");
         }
     }
 
@@ -327,7 +458,7 @@ pub(crate) mod tests {
         // The ids of a door and of no event are ignored.
         let trace = Trace::from_events(events).unwrap().with_relocations([60, 40, 40, 30, 7]);
         assert_eq!(trace.relocations(), [2, 3]);
-        assert_eq!(trace.before_relocation().events().last().map(|event| event.id), Some(30));
+        assert_eq!(trace.before_relocation().events().last().map(|(_, event)| event.id), Some(30));
         assert_eq!(trace.up_to(5).relocations(), [2]);
         assert_eq!(trace.up_to(3).relocations(), [0; 0]);
         assert_eq!(trace.up_to(3).before_relocation(), trace.up_to(3));

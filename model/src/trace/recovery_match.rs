@@ -38,16 +38,16 @@ pub fn match_recovering(
     let mut observer = StepObserver::default();
     let observed = &mut Observed::new(&mut world, &mut observer);
     let mapped = map_with_recovery(observed, &mut exploration, config, &[]);
-    let moves = world.world.moves();
-    let is_end = moves == trace.doors().len();
+    let position = world.world.position();
+    let is_end = position.moves == trace.doors().len();
     let stop = match mapped {
-        Ok(_) => RunStop::after_end(moves, StepPurpose::Audited, trace),
+        Ok(_) => RunStop::after_end(position, StepPurpose::Audited, trace),
         // After many recoveries the robot gives up.
         Err(MappingError::Contradiction(_)) if is_end => Some(RunStop::EndOfTrace),
         Err(MappingError::Contradiction(contradiction)) => {
-            RunStop::after_end(moves, StepPurpose::Contradicted(contradiction), trace)
+            RunStop::after_end(position, StepPurpose::Contradicted(contradiction), trace)
         }
-        Err(error) => Some(RunStop::new(&error, moves, observer.purpose)),
+        Err(error) => Some(RunStop::new(&error, position, observer.purpose)),
     };
     let stop = match (stop, observer.too_large) {
         (Some(RunStop::Departure { .. }), Some(event)) => Some(RunStop::Bound { event, bound }),

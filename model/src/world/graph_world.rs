@@ -34,6 +34,11 @@ impl<'g, A: Aid> GraphWorld<'g, A> {
         Self { graph, aid, state, moves: 0, bound: u64::MAX }
     }
 
+    /// The world with a robot and its aid in this state, which is one of the graph's.
+    pub fn in_state(graph: &'g EmbeddedGraph, aid: A, state: State<A::Placed>) -> Self {
+        Self { graph, aid, state, moves: 0, bound: u64::MAX }
+    }
+
     /// The same world in another state.
     #[must_use]
     pub fn at(self, state: State<A::Placed>) -> Self {

@@ -48,7 +48,7 @@ impl ConformArguments {
             laser: self.laser.params(recorded)?,
             world,
             start: self.robot_start(),
-            marker: self.marker,
+            aid: self.aid,
             assumes_marker: self.assume_marker,
             doors: self.driver.chooser(self.algorithm),
             search: WorldSearch {
@@ -87,7 +87,7 @@ impl ConformArguments {
 /// Why a log could not be checked, with the options that help.
 fn not_checked(path: &Path, opened: &OpenLog, error: CheckError) -> CliError {
     match error {
-        CheckError::Marker(error) => CliError::in_file(path, error),
+        CheckError::Aid(error) => CliError::in_file(path, error),
         error @ CheckError::Algorithm(_) => {
             CliError::in_file(path, format!("{error}; use --algorithm"))
         }

@@ -8,8 +8,8 @@ use toposlam_conform::{
     shorten_frames, shorten_run,
 };
 use toposlam_logs::{
-    arrival_message, door_message,
-    messages::{Door, Percept, ProjectMessage, Run, Scene, Stamp},
+    action_message, arrival_message, door_message,
+    messages::{Action, Door, Percept, ProjectMessage, Run, Scene, Stamp},
     reader::Log,
     record::Arrival,
     recorder::ODOM,
@@ -17,7 +17,9 @@ use toposlam_logs::{
     topic_map::TopicMap,
     writer::{LogWriteError, LogWriter},
 };
-use toposlam_model::{driving::odometry::Odometry, enumerate::Class, marker::NoMarker};
+use toposlam_model::{
+    aid::AidKind, driving::odometry::Odometry, enumerate::Class, marker::NoMarker,
+};
 use toposlam_robot::measured_hallway::direction;
 
 use super::{CliError, ConformArguments, JudgedLog};
@@ -104,7 +106,7 @@ fn not_written(path: &Path, why: &str) {
 }
 
 fn is_marked(config: &ConformConfig) -> bool {
-    config.marker.name() != NoMarker.name()
+    config.aid != AidKind::from(NoMarker)
 }
 
 /// The first divergence of a written log.
@@ -116,7 +118,7 @@ fn divergence_of(bytes: &[u8], evidence: Evidence, config: &ConformConfig) -> Op
     judge(run.events, config, &Quirks::default(), &()).ok()?.divergence
 }
 
-/// A log of the events: percepts and doors. It has odometry only where a hallway is measured, or an event has an angle
+/// A log of the events: percepts, actions and doors. It has odometry only where a hallway is measured, or an event has an angle
 /// off its door or its entry.
 fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
     let mut log = begin(head)?;
@@ -160,6 +162,9 @@ fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
                 let leads = entered.and_then(|(shape, entry)| direction(shape, entry, door));
                 by_door = leads.zip(off).map(|(leads, off)| leads + off);
             }
+            CheckedKind::Action { number, action } => {
+                log.write(Action::TOPIC, time, &action_message(stamp, number, action))?;
+            }
             _ => {}
         }
     }
@@ -182,7 +187,7 @@ fn write_seen(seen: &[SensedScene], head: &Run) -> Result<Vec<u8>, LogWriteError
 /// The head of a shorter log, without the calibration and colours: it has no images.
 fn head(judged: &JudgedLog) -> Run {
     let run = judged.opened.run.clone().unwrap_or_default();
-    let marker = judged.checked.config.marker.name().to_owned();
+    let marker = judged.checked.config.aid.name().to_owned();
     Run { marker, calibration: String::new(), colours: String::new(), ..run }
 }
 

@@ -7,7 +7,7 @@
 use std::{io::Write, path::Path, time::Instant};
 
 use serde_json::{Value, json};
-use toposlam_conform::{LogHead, RecordedMarkerError};
+use toposlam_conform::LogHead;
 use toposlam_logs::topic_map::Role;
 use toposlam_model::{
     embedded_graph::EmbeddedGraph,
@@ -39,8 +39,12 @@ impl ConformArguments {
         let begun = Instant::now();
         let head = LogHead(opened.run.as_ref());
         // A robot that is driven again has no gripper.
-        if let Err(moves @ RecordedMarkerError::Moves(_)) = head.marker() {
-            return Err(CliError::in_file(log, moves));
+        if let Some(aid) = head.aid().ok().filter(|aid| aid.moves()) {
+            let name = aid.name();
+            let cause = format!(
+                "its robot maps with `{name}`, which moves; such a robot is not driven again"
+            );
+            return Err(CliError::in_file(log, cause));
         }
         let settings = head.settings(self.algorithm);
         let RecordedSettings { method, budget, is_resumed, dart_bound, .. } =

@@ -2,6 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
+    aid::Action,
     any_graph::{any_graph, starts},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
@@ -54,7 +55,7 @@ fn a_robot_that_goes_on_when_all_is_known_departs() {
     doors.push(Door(0));
     let trace = walked(&graph, Dart(0), &doors);
     let followed = match_algorithm(Algorithm1, &trace, TraceClaim::Whole, 100);
-    let done = AllowedStep { door: None, purpose: StepPurpose::Done };
+    let done = AllowedStep { action: None, purpose: StepPurpose::Done };
     let departure =
         Departure { algorithm: Algorithm1, event: trace.event(2 * moves + 1), allowed: vec![done] };
     assert_eq!(followed.reached, MatchEnd::Departure(departure));
@@ -131,7 +132,8 @@ fn the_first_event_of_other_choices_is_where_the_default_ones_differ() {
         assert_eq!(followed.choices, expected);
         // Each door that is allowed instead is one that some choices take.
         assert!(departure.allowed.iter().any(|step| step.purpose == StepPurpose::Done));
-        for door in departure.allowed.iter().filter_map(|step| step.door) {
+        for action in departure.allowed.iter().filter_map(|step| step.action) {
+            let Action::Take(door) = action else { panic!("{action} is no door") };
             doors[last / 2] = door;
             let instead = walked(graph, Dart(0), &doors);
             let followed = match_algorithm(Algorithm1, &instead, TraceClaim::Part, 100);
@@ -287,7 +289,7 @@ proptest! {
                 panic!("it is followed")
             };
             prop_assert_eq!(departure.event.id, 2 * moves + 1);
-            prop_assert!(departure.allowed.iter().any(|allowed| allowed.door == Some(taken)));
+            prop_assert!(departure.allowed.iter().any(|allowed| allowed.action == Some(Action::Take(taken))));
             prop_assert!(algorithm == Algorithm1 || departure.allowed.len() == 1);
         }
     }

@@ -132,7 +132,7 @@ impl OwnJudgement {
                 laser: LaserParams::default(),
                 world,
                 start: RobotStart::Anywhere,
-                marker: Some(NoMarker),
+                aid: Some(NoMarker.into()),
                 assumes_marker: false,
                 doors: DoorChooser::Anyone,
                 search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: STEPS },
