@@ -102,6 +102,9 @@ pub enum SightingError {
     NotRecorded,
     #[error("its percepts do not record along which door the marker points")]
     NoDoor,
+    /// An event, counted from 1.
+    #[error("after event {event}, it does not record what the robot then perceived where it stood")]
+    NotRecordedAfter { event: usize },
 }
 
 /// An arrival of which only the percept is known.
@@ -156,6 +159,12 @@ impl RunEvents {
     pub(crate) fn complete_sightings(&mut self, aid: AidKind) -> Result<(), SightingError> {
         let is_none = aid == NoMarker.into();
         let is_undirected = [Undirected.into(), MOVABLE.into()].contains(&aid);
+        // Of a marker it follows what is seen of it where it was dropped or picked up.
+        let is_marker =
+            matches!(aid, AidKind::Fixed(_) | AidKind::Markers(_) | AidKind::Pointer(_));
+        if let Some(event) = self.unseen_action().filter(|_| !is_marker) {
+            return Err(SightingError::NotRecordedAfter { event: event + 1 });
+        }
         let is_directional = [Directional.into(), AidKind::Pointer(MovablePointer)].contains(&aid);
         for arrival in self.arrivals_mut() {
             match arrival.sighting {
@@ -175,6 +184,15 @@ impl RunEvents {
     pub(crate) fn may_show_marker(&self) -> bool {
         let mut sightings = self.events.iter().filter_map(|event| Some(event.arrival()?.sighting));
         sightings.any(|sighting| sighting != Some(Sighting::Nothing))
+    }
+
+    /// The index of the first action with the marking aid after which nothing is recorded before the next action or door.
+    fn unseen_action(&self) -> Option<usize> {
+        let is_unseen = |two: &[CheckedEvent]| {
+            let is_action = |event: &CheckedEvent| matches!(event.kind, CheckedKind::Action { .. });
+            is_action(&two[0]) && two[1].arrival().is_none()
+        };
+        self.events.windows(2).position(is_unseen)
     }
 
     /// What the robot first did with its marking aid, and its index.

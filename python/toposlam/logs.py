@@ -208,9 +208,10 @@ def conform(
     """Checks a log against the specification, in a known world or with the smallest that explains it.
 
     `driver` is what chose the doors: `"algorithm"` as the log records it, or else `"algorithm1"` or
-    `"folding"`, or `"anyone"`. `marker` is the robot's marker, by default that of the log; `assume_marker`
-    adds one at the first junction of a laser log. With `corners`, the bends of corridors are vertices in a
-    laser log; otherwise they are none in the world either.
+    `"folding"`, or `"anyone"`. `marker` is the robot's marking aid, also `"movable"` or
+    `"movable-directional"`, by default that of the log; `assume_marker` adds one at the first junction of a
+    laser log. With `corners`, the bends of corridors are vertices in a laser log; otherwise they are none in
+    the world either.
 
     Without a world, the search for one is bounded: `cls` is its class (`"multigraph"`), `max_edges` the
     most edges, and `max_steps` (500,000) the most steps. `max_darts` is the most darts of the map that the

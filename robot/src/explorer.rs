@@ -414,6 +414,10 @@ mod tests {
             Ok(())
         }
 
+        fn handle(&mut self, _: AidAction) -> Result<(), RobotError> {
+            Ok(())
+        }
+
         fn odometry(&self) -> TimedOdometry {
             TimedOdometry { time: 2.0, odometry: Odometry::default() }
         }
@@ -433,6 +437,18 @@ mod tests {
         // Two images decide the start, and there the marker lies along the entry.
         assert_eq!(percept.unwrap().to_string(), "2 doors, marker along door 0");
         assert_eq!(asked, 4);
+    }
+
+    #[test]
+    fn a_robot_knows_whether_its_marker_lies_below_it() {
+        let robot = Still { images: vec![Some(3.0)], asked: 0 };
+        let mut explorer = RobotExplorer::new(robot, NoSensor, ());
+        let mut perceived = vec![explorer.percept().unwrap().to_string()];
+        for action in [AidAction::PickUp, AidAction::Drop] {
+            explorer.handle(action).unwrap();
+            perceived.push(explorer.percept().unwrap().to_string());
+        }
+        assert_eq!(perceived, ["2 doors, marker along door 0", "2 doors", "2 doors, marker"]);
     }
 
     /// It may have turned while it steered past the obstacle.
