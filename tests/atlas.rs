@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 use toposlam_model::{
-    aid::{AidKind, FEW_STATES},
+    aid::{AIDS, AidKind, FEW_STATES},
     enumerate::Class,
     format::world_file,
 };
@@ -77,4 +77,37 @@ fn the_atlas_contains_what_the_search_finds() {
     }
     assert_eq!(names_in(&repository("worlds/atlas")), files.into_iter().collect::<Vec<_>>());
     assert_eq!(names_in(&repository("worlds/atlas")).len(), 1 + 18 * 2 * 2);
+}
+
+/// The other aids that move: in each class either a theorem says that they suffice, or their smallest pair is in the
+/// files of an aid with the same pair.
+#[test]
+fn aids_with_the_same_pairs_have_the_same_files() {
+    let table = read("worlds/atlas/README.md");
+    for &aid in AIDS.iter().filter(|aid| !FEW_STATES.contains(aid)) {
+        for class in Class::ALL {
+            let theorem = about(aid.name(), class).unwrap();
+            if theorem.suffices {
+                assert_eq!(cell(&table, aid, class), format!("none: `{}`", theorem.theorem));
+                continue;
+            }
+            let search = "counterexample --json --max-edges 3 --class";
+            let search = format!("{search} {} --marker {}", class.name(), aid.name());
+            let lines = printed(program().args(search.split(' ')));
+            let last: Value = serde_json::from_str(lines.lines().last().unwrap()).unwrap();
+            for (number, world) in last["smallest"]["worlds"].as_array().unwrap().iter().enumerate()
+            {
+                let found = world_file::read(world.to_string().as_bytes()).unwrap();
+                let file = format!("movable-{}-{}.toml", class.name(), number + 1);
+                let filed = world_file::read(read(&format!("worlds/atlas/{file}")).as_bytes());
+                let filed = filed.unwrap();
+                assert_eq!((found.graph, found.start), (filed.graph, filed.start), "{aid:?}");
+                let row =
+                    table.lines().find(|line| line.starts_with(&format!("| {} |", aid.name())));
+                assert!(row.unwrap().contains(&format!("]({file})")), "{aid:?}");
+            }
+            assert_eq!(cell(&table, aid, class), "2 edges 2 edges", "{aid:?} {class}");
+            assert!(table.contains(&format!(": `{}` |", theorem.theorem)), "{class} {aid:?}");
+        }
+    }
 }

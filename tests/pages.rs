@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use toposlam_model::aid::{AIDS, markers::MOVABLE};
+
 use crate::{browser, output, program};
 
 /// Writes a page by each of these commands, which end with the option for its file, and opens them in a browser.
@@ -162,4 +164,18 @@ fn a_game_with_true_claims_is_won_and_other_maps_are_judged() {
             ("movable", "play worlds/shape-8.toml --marker movable --out"),
         ],
     );
+}
+
+/// In Figure 1(b), on the torus, and in a corridor: every other aid that moves.
+#[test]
+#[ignore = "it takes long: `.ci/run`"]
+fn a_game_can_be_won_with_each_aid_that_moves() {
+    let games = AIDS.into_iter().filter(|aid| aid.moves() && *aid != MOVABLE.into());
+    let worlds = ["shape-8", "figure-1b"].into_iter().cycle();
+    let commands: Vec<_> = games
+        .zip(worlds)
+        .map(|(aid, world)| format!("play worlds/{world}.toml --aid {} --out", aid.name()))
+        .collect();
+    let commands: Vec<_> = commands.iter().map(|line| ("aid", &**line)).collect();
+    open("play_page.mjs", "aid-pages", &commands);
 }

@@ -1,15 +1,15 @@
-//! Which kinds of markers suffice in which classes of worlds: the theorems that are proved in Coq.
+//! Which marking aids suffice in which classes of worlds: the theorems that are proved in Coq.
 
 use toposlam_model::enumerate::Class;
 
-/// A theorem about a kind of marker in some classes of worlds.
+/// A theorem about marking aids in some classes of worlds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MarkerTheorem {
-    /// The name of the kind of marker.
-    pub marker: &'static str,
+    /// The names of the aids.
+    pub aids: &'static [&'static str],
     /// The classes about which the theorem is.
     pub classes: &'static [Class],
-    /// Whether one robot maps every world of these classes with such a marker. Otherwise the theorem
+    /// Whether one robot maps every world of these classes with such an aid. Otherwise the theorem
     /// has a pair of worlds, in all of these classes, of which no robot maps both.
     pub suffices: bool,
     /// The theorem's name.
@@ -19,44 +19,71 @@ pub struct MarkerTheorem {
 const EVERY: &[Class] = &Class::ALL;
 const SIMPLE: &[Class] = &[Class::Simple, Class::Corridor, Class::Planar];
 
-/// The theorems about kinds of markers, by kind.
-pub const MARKER_THEOREMS: [MarkerTheorem; 12] = [
-    no_robot("none", EVERY, "no_marker_impossible"),
+/// Several markers that are carried.
+const MARKERS: &[&str] = &[
+    "movable-2",
+    "movable-3",
+    "movable-4",
+    "movable-2-distinct",
+    "movable-3-distinct",
+    "movable-4-distinct",
+];
+const ROUND_TEAMS: &[&str] = &["team-2-round", "team-3-round"];
+/// The aids that are seen only at vertices, but for one marker.
+const AT_VERTICES: &[&str] = &[
+    "movable-2",
+    "movable-3",
+    "movable-4",
+    "movable-2-distinct",
+    "movable-3-distinct",
+    "movable-4-distinct",
+    "team-2-round",
+    "team-3-round",
+];
+
+/// The theorems about marking aids, by aid.
+pub const MARKER_THEOREMS: [MarkerTheorem; 17] = [
+    no_robot(&["none"], EVERY, "no_marker_impossible"),
     // Both worlds have a vertex of degree 4, and one of them is not planar.
-    no_robot("undirected", &[Class::Multigraph, Class::Simple], "undirected_marker_impossible"),
-    no_robot("undirected", &[Class::Corridor], "undirected_corridor_impossible"),
-    no_robot("undirected", &[Class::Planar], "undirected_planar_impossible"),
-    one_robot("directional", EVERY, "directional_marker_suffices"),
-    no_robot("undirected-edge", EVERY, "undirected_edge_impossible"),
-    one_robot("directed-edge", EVERY, "directed_edge_suffices"),
-    no_robot("two-identical", EVERY, "two_identical_impossible"),
-    no_robot("two-distinct", &[Class::Multigraph], "two_distinct_impossible"),
-    one_robot("two-distinct", SIMPLE, "two_distinct_suffices_simple"),
-    no_robot("movable", &[Class::Multigraph], "movable_marker_impossible"),
-    one_robot("movable", SIMPLE, "movable_marker_correct"),
+    no_robot(&["undirected"], &[Class::Multigraph, Class::Simple], "undirected_marker_impossible"),
+    no_robot(&["undirected"], &[Class::Corridor], "undirected_corridor_impossible"),
+    no_robot(&["undirected"], &[Class::Planar], "undirected_planar_impossible"),
+    one_robot(&["directional"], EVERY, "directional_marker_suffices"),
+    no_robot(&["undirected-edge"], EVERY, "undirected_edge_impossible"),
+    one_robot(&["directed-edge"], EVERY, "directed_edge_suffices"),
+    no_robot(&["two-identical"], EVERY, "two_identical_impossible"),
+    no_robot(&["two-distinct"], &[Class::Multigraph], "two_distinct_impossible"),
+    one_robot(&["two-distinct"], SIMPLE, "two_distinct_suffices_simple"),
+    no_robot(&["movable"], &[Class::Multigraph], "movable_marker_impossible"),
+    one_robot(&["movable"], SIMPLE, "movable_marker_correct"),
+    no_robot(AT_VERTICES, &[Class::Multigraph], "aids_at_vertices_impossible"),
+    one_robot(MARKERS, SIMPLE, "movable_markers_suffice_simple"),
+    one_robot(ROUND_TEAMS, SIMPLE, "round_team_suffices_simple"),
+    one_robot(&["movable-directional", "team-2", "team-3"], EVERY, "front_suffices"),
+    one_robot(&["string-1", "string-2", "string-3"], EVERY, "string_suffices"),
 ];
 
 const fn one_robot(
-    marker: &'static str,
+    aids: &'static [&'static str],
     classes: &'static [Class],
     theorem: &'static str,
 ) -> MarkerTheorem {
-    MarkerTheorem { marker, classes, suffices: true, theorem }
+    MarkerTheorem { aids, classes, suffices: true, theorem }
 }
 
 const fn no_robot(
-    marker: &'static str,
+    aids: &'static [&'static str],
     classes: &'static [Class],
     theorem: &'static str,
 ) -> MarkerTheorem {
-    MarkerTheorem { suffices: false, ..one_robot(marker, classes, theorem) }
+    MarkerTheorem { suffices: false, ..one_robot(aids, classes, theorem) }
 }
 
-/// The theorem about this kind of marker in this class of worlds, if there is one.
-pub fn about(marker: &str, class: Class) -> Option<&'static MarkerTheorem> {
+/// The theorem about this marking aid in this class of worlds, if there is one.
+pub fn about(aid: &str, class: Class) -> Option<&'static MarkerTheorem> {
     MARKER_THEOREMS
         .iter()
-        .find(|theorem| theorem.marker == marker && theorem.classes.contains(&class))
+        .find(|theorem| theorem.aids.contains(&aid) && theorem.classes.contains(&class))
 }
 
 #[cfg(test)]
@@ -64,28 +91,21 @@ mod tests {
     use std::path::Path;
 
     use toposlam_model::{
-        aid::{self, FEW_STATES},
+        aid::{AIDS, FEW_STATES},
         format::world_file,
     };
 
     use super::*;
     use crate::theorems;
 
-    /// Theorems about markers that are not kinds: at a dead end, and two that are not adjacent. And about aids that move.
-    const OTHERS: [&str; 6] = [
-        "undirected_dead_end_suffices",
-        "two_distant_impossible",
-        "aids_at_vertices_impossible",
-        "front_suffices",
-        "string_suffices",
-        "round_team_suffices_simple",
-    ];
+    /// Theorems about markers that are not kinds: at a dead end, and two that are not adjacent.
+    const OTHERS: [&str; 2] = ["undirected_dead_end_suffices", "two_distant_impossible"];
 
     #[test]
     fn each_theorem_on_markers_is_in_the_table_once() {
         let mut stated: Vec<_> = theorems::all().map(|theorem| theorem.name).collect();
         stated.retain(|name| {
-            ["_suffices", "_impossible", "movable_marker_correct"]
+            ["_suffice", "_impossible", "movable_marker_correct"]
                 .iter()
                 .any(|part| name.contains(part))
         });
@@ -96,17 +116,21 @@ mod tests {
         assert_eq!(listed, stated);
     }
 
+    /// So no theorem contradicts another.
     #[test]
-    fn no_theorem_contradicts_another() {
-        for marker in FEW_STATES {
+    fn one_theorem_decides_about_each_aid_and_class() {
+        for aid in AIDS {
             for class in Class::ALL {
-                let rows = MARKER_THEOREMS
-                    .iter()
-                    .filter(|row| row.marker == marker.name() && row.classes.contains(&class));
-                assert!(rows.count() <= 1, "{marker:?} {class}");
+                let is_about = |row: &&MarkerTheorem| {
+                    row.aids.contains(&aid.name()) && row.classes.contains(&class)
+                };
+                let rows = MARKER_THEOREMS.iter().filter(is_about);
+                assert_eq!(rows.count(), 1, "{aid:?} {class}");
             }
         }
-        assert!(MARKER_THEOREMS.iter().all(|row| aid::named(row.marker).is_ok()));
+        let known = AIDS.map(|aid| aid.name());
+        let mut named = MARKER_THEOREMS.iter().flat_map(|row| row.aids);
+        assert!(named.all(|name| known.contains(name)));
     }
 
     /// The pairs of `Figures.v`, as world files. The other pairs are of multigraphs.
@@ -148,7 +172,7 @@ mod tests {
             // A class may have a theorem of its own.
             let decided: Vec<_> = classes
                 .into_iter()
-                .filter(|&class| about(row.marker, class).unwrap().theorem == theorem)
+                .filter(|&class| about(row.aids[0], class).unwrap().theorem == theorem)
                 .collect();
             assert_eq!(row.classes, decided, "{theorem}");
         }

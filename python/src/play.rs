@@ -2,16 +2,13 @@
 
 use pyo3::prelude::*;
 use toposlam_draw::page::{MOST_VERTICES, NoGame, games_of, play_page, random_games};
-use toposlam_model::{
-    aid::{AidKind, FEW_STATES},
-    format::named_world::NamedWorld,
-};
+use toposlam_model::format::named_world::NamedWorld;
 
 use crate::{
     error::{error, guarded, internal, interrupted},
     long_work::run_watched,
     starts::named_class,
-    world::{CoreWorld, named_aid},
+    world::{CoreWorld, check_seen, named_aid},
 };
 
 /// The page of a world, from a start and from others.
@@ -22,24 +19,14 @@ pub(crate) fn world_page(
     facing: u32,
     marker: &str,
 ) -> PyResult<String> {
-    let (marker, facing) = (game_aid(py, marker)?, world.dart(py, facing)?);
+    let (marker, facing) = (named_aid(py, marker)?, world.dart(py, facing)?);
     let count = world.0.graph.vertex_count();
     if count > MOST_VERTICES {
         let text = format!("the world has {count} vertices; a page can have {MOST_VERTICES}");
         return Err(error(py, "SizeError", text));
     }
+    check_seen(py, marker, &world.0.graph)?;
     guarded(py, || Ok(py.detach(|| play_page(&games_of(&world.0, facing), marker))))
-}
-
-/// The aid of a game: one with few states.
-fn game_aid(py: Python<'_>, name: &str) -> PyResult<AidKind> {
-    let aid = named_aid(py, name)?;
-    if FEW_STATES.contains(&aid) {
-        return Ok(aid);
-    }
-    let known: Vec<_> = FEW_STATES.iter().map(|aid| aid.name()).collect();
-    let text = format!("no game has the aid `{name}`; choose one of {}", known.join(", "));
-    Err(error(py, "UnknownMarkerError", text))
 }
 
 /// The page of random worlds.
@@ -51,7 +38,7 @@ pub(crate) fn random_page(
     seed: u64,
     marker: &str,
 ) -> PyResult<String> {
-    let marker = game_aid(py, marker)?;
+    let marker = named_aid(py, marker)?;
     let games = games(py, class_, edges, seed)?;
     guarded(py, || Ok(py.detach(|| play_page(&games, marker))))
 }

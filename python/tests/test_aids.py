@@ -83,12 +83,13 @@ def test_nothing_is_claimed_of_a_string_that_is_not_seen():
         lambda: star.robot("string-1"),
         lambda: ts.compare(star, star, marker="string-1"),
         lambda: ts.explore(star, algorithm="string"),
+        lambda: ts.play(star, marker="string-1"),
     ):
         with pytest.raises(errors.SizeError, match="more than 32 doors"):
             call()
     assert ts.explore(star, algorithm="team-2").map.is_isomorphic(star)
 
 
-def test_a_game_has_an_aid_with_few_states():
-    with pytest.raises(errors.UnknownMarkerError, match="no game has the aid `team-2`"):
-        ts.play(ts.World.load("worlds/shape-8.toml"), marker="team-2")
+def test_a_game_has_any_aid():
+    page = ts.play(ts.World.load("worlds/shape-8.toml"), marker="team-2")
+    assert '"marker":"team-2"' in page.html

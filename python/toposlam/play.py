@@ -49,7 +49,7 @@ def play(
     """Returns a page on which you are the robot: you map a world from its percepts, and it judges your map.
 
     Without a world, the page has random ones of the class `cls` ("corridor") with `edges` edges (6), chosen
-    by `seed` (1). `marker` is the name of a kind.
+    by `seed` (1). `marker` is the name of a marking aid.
 
     Raises `WorldTypeError` for what is not a world, `NoStartError` if it has no start, `UnknownMarkerError`,
     `UnknownClassError`, `SizeError`, or `UnusedOptionError`.

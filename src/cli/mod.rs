@@ -42,7 +42,7 @@ use clap::{
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 use toposlam_model::{
-    aid::{self, AIDS, AidKind, FEW_STATES},
+    aid::{self, AIDS, AidKind},
     check::{DEFAULT_STATE_BUDGET, RunChoices},
     format::named_world::NamedWorld,
 };
@@ -119,12 +119,6 @@ fn run_choices(text: &str) -> Result<RunChoices, String> {
 fn marker_kinds() -> impl TypedValueParser<Value = AidKind> {
     let kinds = AIDS.map(|aid| PossibleValue::new(aid.name()).help(aid.about()));
     PossibleValuesParser::new(kinds).try_map(|name| aid::named(&name))
-}
-
-/// Parses the name of a marking aid that the page of `play` knows.
-fn play_aids() -> impl TypedValueParser<Value = AidKind> {
-    PossibleValuesParser::new(FEW_STATES.iter().map(|aid| aid.name()))
-        .try_map(|name| aid::named(&name))
 }
 
 /// Writes a drawing as PNG or SVG, by the ending of the file.

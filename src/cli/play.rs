@@ -10,7 +10,9 @@ use toposlam_model::{aid::AidKind, enumerate::Class, format::named_world::NamedW
 use super::{
     CliError, Outcome,
     exit_codes::help_end,
-    input, output, play_aids,
+    input,
+    mapping_marker::check_seen,
+    marker_kinds, output,
     progress::{Progress, StopSignal},
     text::vertices,
 };
@@ -18,8 +20,8 @@ use crate::page::{MOST_VERTICES, NoGame, games_of, play_page, random_games};
 
 /// Write a page on which you are the robot: map a world from its percepts
 ///
-/// The page shows how many doors a place has, which one you came in by, and the marker. You choose doors, and
-/// claim that a place is one you know. At the end your map is judged. If it is right but your walk does not prove
+/// The page shows how many doors a place has, which one you came in by, and the marker, or what else the marking aid
+/// shows. You choose doors, carry markers or a string, send other robots, and claim that a place is one you know. At the end your map is judged. If it is right but your walk does not prove
 /// it, the page draws the smallest other world that explains your walk. Your moves are compared with those of the
 /// algorithms that map with the marker, and, with a directional one, of the certificate: no robot needs fewer.
 ///
@@ -33,6 +35,7 @@ use crate::page::{MOST_VERTICES, NoGame, games_of, play_page, random_games};
 Examples:
   toposlam play worlds/shape-6.toml --out play.html
   toposlam play worlds/figure-1a.toml --marker undirected --out play.html
+  toposlam play worlds/k4-torus.toml --aid team-2 --out play.html
   toposlam play --edges 5 --seed 7 --out play.html",
         &[(0, "the page is written"), (2, "bad usage or input"), (3, "interrupted")],
     )
@@ -40,9 +43,8 @@ Examples:
 pub(super) struct PlayArguments {
     /// The world file [default: a start at random, each of a class and a number of edges equally likely]
     world: Option<PathBuf>,
-    /// The marker: none, undirected, directional, undirected-edge, directed-edge, two-identical, two-distinct or
-    /// movable
-    #[arg(long, visible_alias = "aid", default_value = "directional", value_name = "KIND", value_parser = play_aids())]
+    /// Marking aid
+    #[arg(long, visible_alias = "aid", default_value = "directional", value_name = "KIND", value_parser = marker_kinds())]
     marker: AidKind,
     /// Number of edges of a random world, from 1 to 8
     #[arg(
@@ -91,6 +93,7 @@ impl PlayArguments {
                 format!("it has {}; a page can have {}", vertices(count), vertices(MOST_VERTICES));
             return Err(CliError::in_file(path, cause));
         }
+        check_seen(self.marker, path, [&world.graph])?;
         let facing = input::start_of(&world, self.start.as_deref())?;
         Ok(games_of(&world, facing))
     }

@@ -5,9 +5,11 @@
 // right: a game with a directional marker that takes the doors of the folding explorer and makes only true claims, and
 // wins; loops: the world is an edge from the marker to a place with two loops, each between two neighbouring doors;
 // guessed: figure 1(a) with an undirected marker, which no walk proves; proved: a world in which a walk through every door
-// proves the map with the marker of the page; movable: the walk of the movable marker algorithm.
+// proves the map with the marker of the page; movable: the walk of the movable marker algorithm; aid: a game with an aid
+// that moves, in which random actions are taken until the map is complete, and all is claimed that is true.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { DESK, LAPTOP, READER, assertFitsPhone, assertNamesReadable, assertReadable, photograph, seeded, visitAll } from "./visits.mjs";
 
 /** What the page shows now. */
@@ -305,6 +307,100 @@ async function carry(page, file) {
   return { moves };
 }
 
+/** The robots of the specification, as the pages have them. */
+const read = (name) => readFileSync(new URL(`../../draw/src/page/browser/${name}`, import.meta.url), "utf8");
+const { Graph, Robot } = new Function(`${read("graph.js")}\n${read("marker.js")}\nreturn { Graph, Robot };`)();
+
+/** The places that robots have discovered: as the page calls them, and the dart by which each was first entered. */
+class Discovered {
+  constructor(truth) {
+    this.names = new Map([[truth.graph.vertex(truth.pose), "v0"]]);
+    this.entries = new Map([[truth.graph.vertex(truth.pose), truth.pose]]);
+  }
+
+  /** The pose of a robot; the explorer is number 0. */
+  static pose(truth, number) {
+    return number === 0 ? truth.pose : truth.placed[number - 1];
+  }
+
+  /** A robot goes away: its place gets a name, if it has none. */
+  leave({ graph }, pose) {
+    if (!this.names.has(graph.vertex(pose))) this.names.set(graph.vertex(pose), `v${this.names.size}`);
+  }
+
+  /** What can be claimed of a robot that has come in: the place and the door; null if the place is new. */
+  arrive(truth, number) {
+    const { graph } = truth;
+    const pose = Discovered.pose(truth, number);
+    const vertex = graph.vertex(pose);
+    const first = this.entries.get(vertex);
+    if (first === undefined) {
+      this.entries.set(vertex, pose);
+      return null;
+    }
+    const robots = [...Array(truth.aid.others + 1).keys()].filter((other) => other !== number);
+    const there = robots.filter((other) => graph.vertex(Discovered.pose(truth, other)) === vertex);
+    const name = this.names.get(vertex) ?? (there[0] === 0 ? "?" : `?${there[0] + 1}`);
+    return { name, index: graph.door(first, pose) };
+  }
+}
+
+/** A game with an aid that moves, by the buttons of its actions. */
+async function playAid(page, file) {
+  const { marker, games } = await page.evaluate(() => JSON.parse(document.querySelector("#data").textContent));
+  const [{ world, start }] = games;
+  const graph = Graph.of(world);
+  const truth = Robot.start(marker, graph, graph.dart(start));
+  const discovered = new Discovered(truth);
+  const random = seeded(5);
+  const isOpen = async () => !/no open doors$/.test((await shown(page)).size);
+  let [moves, steps, claims] = [0, 0, 0];
+  for (; steps < 600 && (await isOpen()); steps += 1) {
+    const possible = truth.actions();
+    assert.deepEqual(await page.locator(".doors button").evaluateAll((all) => all.map((it) => it.dataset.action)), possible);
+    const action = possible[random(possible.length)];
+    const sent = action.match(/^send-(\d):/);
+    const isMove = sent !== null || /^\d+$/.test(action);
+    const number = sent === null ? 0 : Number(sent[1]) - 1;
+    if (isMove) discovered.leave(truth, Discovered.pose(truth, number));
+    await page.locator(`.doors button[data-action="${action}"]`).click();
+    truth.act(action);
+    const { percept, status } = await shown(page);
+    const { sighting, degree } = truth.percept();
+    const sensed = (degree === 1 ? "1 door" : `${degree} doors`) + (sighting === "no marker" ? "" : `, ${sighting}`);
+    assert.equal(percept, sensed + (truth.held && `; ${truth.held}`));
+    assert.doesNotMatch(status, /wrong|undefined|NaN/);
+    if (isMove) {
+      moves += 1;
+      const known = discovered.arrive(truth, number);
+      if (known !== null && (await claimOf(page, number, known))) claims += 1;
+    }
+    if (steps === 12) {
+      await atHalf(page, file);
+      await assertReadable(page, file, "half");
+    }
+  }
+  await page.locator("#finish").click();
+  assert.match((await shown(page)).heading, /^Right, (and proved|but guessed|proof not known)$/);
+  const rows = await page.evaluate(() => [...document.querySelectorAll(".comparison tbody tr")].map((row) => [...row.cells].slice(0, 2).map((cell) => cell.textContent)));
+  assert.deepEqual(rows[0], ["You", String(moves)]);
+  return { marker, heading: (await shown(page)).heading, steps, moves, claims, rows: rows.length };
+}
+
+/** Claims where a robot is, if the map does not show it. Returns whether it did. */
+async function claimOf(page, number, { name, index }) {
+  if (await page.locator("#who").isVisible()) await page.locator("#who").selectOption(String(number));
+  const options = await page.locator("#place option").allTextContents();
+  const option = options.find((text) => text.startsWith(`${name},`));
+  // Where the robot is on the map is not offered.
+  if (option === undefined) return false;
+  await page.locator("#place").selectOption({ label: option });
+  await page.locator("#dart").selectOption(String(index));
+  await page.locator("#claim").click();
+  assert.match((await shown(page)).status, number === 0 ? /^This place is / : /^Robot \d is at /);
+  return true;
+}
+
 /** Answers the next question of the page. */
 function answerNext(page, answer) {
   page.once("dialog", (dialog) => (answer ? dialog.accept() : dialog.dismiss()));
@@ -425,7 +521,7 @@ async function playLoops(page, file) {
 
 async function visit(page, kind, file) {
   await photograph(page, file, "start");
-  const games = { right: win, loops: playLoops, guessed: guess, proved: prove, movable: carry };
+  const games = { right: win, loops: playLoops, guessed: guess, proved: prove, movable: carry, aid: playAid };
   const found = await games[kind](page, file);
   await assertReadable(page, file, "end");
   for (const [name, size] of [["desk", DESK], ["laptop", LAPTOP]]) {
@@ -443,4 +539,4 @@ async function visit(page, kind, file) {
   return found;
 }
 
-await visitAll(["right", "loops", "guessed", "proved", "movable"], visit);
+await visitAll(["right", "loops", "guessed", "proved", "movable", "aid"], visit);

@@ -112,7 +112,7 @@ impl WorldPicture<'_> {
             [MarkerPart::OnEdgeAlong(dart)] => format!("{} is marked with an arrow", edge(*dart)),
             [MarkerPart::At { vertex, .. }] => format!("the marker lies at {}", name(*vertex)),
             [MarkerPart::StringEnd(vertex)] => format!("the string is fixed at {}", name(*vertex)),
-            [MarkerPart::Robot { pose, .. }] => {
+            [MarkerPart::Robot { pose, .. }, ..] => {
                 format!("the whole team stands at {}", name(graph.vertex(*pose)))
             }
             [MarkerPart::At { vertex: one, .. }, others @ ..]

@@ -3,12 +3,7 @@
 //! every small start, with all choices in every one with up to 3 edges, and with random choices in random
 //! starts with 10 to 40 edges. Section 2.3.
 
-use std::{
-    fs::{self, File},
-    iter,
-    path::Path,
-    process::Command,
-};
+use std::{fs, iter, path::Path};
 
 use proptest::{
     prelude::Rng,
@@ -26,7 +21,7 @@ use toposlam_model::{
 };
 use toposlam_proofs::{choose::Choose, draw, odometer::ChoiceOdometer};
 
-use super::{OCAMLOPT, compiled, printed, source, starts};
+use super::{compiled, run_extracted, source, starts};
 
 /// A line of a run: the name of what is listed, and the numbers.
 pub(super) fn listed<T: ToString>(name: &str, numbers: impl Iterator<Item = T>) -> String {
@@ -217,15 +212,8 @@ impl Case {
 /// Extracts the program in a folder where the development is compiled, builds it, and runs the algorithms
 /// in these cases: a line for each run.
 pub(super) fn extracted(folder: &Path, cases: &[Case]) -> String {
-    printed(Command::new("make").arg("Extraction.vo").current_dir(folder));
-    let program = folder.join("compare");
-    let mut ocamlopt = Command::new(OCAMLOPT);
-    ocamlopt.current_dir(folder).arg("-o").arg(&program).args(["mappings.mli", "mappings.ml"]);
-    fs::copy(source("compare/main.ml"), folder.join("main.ml")).unwrap();
-    printed(ocamlopt.arg("main.ml"));
-    let lines = folder.join("starts");
-    fs::write(&lines, cases.iter().map(Case::line).collect::<String>()).unwrap();
-    printed(Command::new(program).stdin(File::open(lines).unwrap()))
+    let extraction = ["Extraction.vo", "mappings", "compare/main.ml"];
+    run_extracted(folder, extraction, &cases.iter().map(Case::line).collect::<String>())
 }
 
 /// The first case with different runs, and the difference.

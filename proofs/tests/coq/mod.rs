@@ -3,13 +3,14 @@
 //!
 //! `cargo test` ignores these tests: `.ci/run` runs them after a change of what they depend on, and `.ci/run --all`.
 
+mod aids;
 mod broken;
 mod comparison;
 mod figures;
 mod folding;
 
 use std::{
-    fs,
+    fs::{self, File},
     ops::{ControlFlow, RangeInclusive},
     path::{Path, PathBuf},
     process::{Command, Output},
@@ -70,6 +71,21 @@ static COMPILED: LazyLock<Result<Compiled, String>> = LazyLock::new(|| {
         Err(_) => Err(format!("there is no {OCAMLOPT}; on Debian: apt-get install ocaml-nox")),
     }
 });
+
+/// Extracts a program in a folder with the makefile of the development, builds it with the source that runs it, and
+/// returns what it prints for these lines. An extraction is its target, its module and that source.
+fn run_extracted(folder: &Path, extraction: [&str; 3], lines: &str) -> String {
+    let [target, module, main] = extraction;
+    printed(Command::new("make").arg(target).current_dir(folder));
+    fs::copy(source(main), folder.join("main.ml")).unwrap();
+    let program = folder.join("compare");
+    let mut ocamlopt = Command::new(OCAMLOPT);
+    ocamlopt.current_dir(folder).arg("-o").arg(&program);
+    printed(ocamlopt.args([&format!("{module}.mli"), &format!("{module}.ml"), "main.ml"]));
+    let input = folder.join("lines");
+    fs::write(&input, lines).unwrap();
+    printed(Command::new(program).stdin(File::open(input).unwrap()))
+}
 
 /// Panics where Coq, MathComp or OCaml is missing.
 fn compiled() -> &'static Compiled {

@@ -13,7 +13,9 @@ const DROP = "drop";
 
 /** The names of markers that look different; a drawing shows each in another way. */
 const LOOKS = ["first", "second", "third", "fourth"];
-/** How the rings of these markers are drawn, in words. */
+/** The parts of an aid that are drawn as rings. */
+const RINGS = ["lying", ...LOOKS.slice(1)];
+/** How these rings are drawn, in words. */
 const DRAWN_AS = ["", " (dashed)", " (dotted)", " (dashed and dotted)"];
 
 /** `1`, `1 and 2`, `1, 2 and 3`. */
@@ -37,12 +39,20 @@ const pointing = (graph, along, pose) =>
  * - `parts(graph, places)`: what a drawing shows: darts, and how each is drawn;
  * - `words(places, names)`: where it is, in words;
  * - `text(places, names)`: its state, after the pose of the robot; `signs` explains it;
- * - `actions(graph, places, pose)` beside doors, and the places after one by `act`;
- * - `leave(graph, places, dart)`: the places after the robot left by the dart, or null if it cannot.
+ * - `actions(graph, places, pose)` beside doors, and the places after one by `act`; null if a map, where two places may be
+ *   one, does not show them;
+ * - `leave(graph, places, dart)`: the places after the robot left by the dart, or null if it cannot;
+ * - `carried`: what the robot picks up and drops, or null; and `held(places)`: what it holds, in words, or nothing;
+ * - `elsewhere`: that a robot perceives it where a map does not show it.
  */
 const aid = (own) => ({
   thing: "the marker",
+  carried: null,
   signs: "",
+  elsewhere: "The marker lies here, and on your map it lies elsewhere",
+  /** The number of other robots. */
+  others: 0,
+  held: () => "",
   placed: (graph, facing) => [facing],
   text: () => "",
   actions: () => [],
@@ -68,7 +78,10 @@ const POINTING = {
     along === null ? HELD : `The marker lies at ${vertex(along)}, along the small number ${index(along)}.`,
 };
 /** A mark on the edge of a dart. */
-const ON_EDGE = { starts: (graph, facing) => [graph.opposite(facing)] };
+const ON_EDGE = {
+  starts: (graph, facing) => [graph.opposite(facing)],
+  elsewhere: "You passed the mark, and on your map the mark is elsewhere",
+};
 /** A marker at each end of the edge of a dart. */
 const AT_ENDS = {
   thing: "the markers",
@@ -83,8 +96,15 @@ function movable(count, areAlike = true) {
   const held = (places) => numbers.filter((at) => places[at] === null);
   const look = (at) => (areAlike ? 0 : at);
   const sorted = (places) => (areAlike ? places.sort((one, two) => (one ?? -1) - (two ?? -1)) : places);
+  const handful = (carried) => {
+    const some = count === 1 ? "the marker" : carried.length > 1 ? `${carried.length} markers` : "a marker";
+    return areAlike ? some : `the ${these(carried)}`;
+  };
   return aid({
     thing: count > 1 ? "the markers" : "the marker",
+    carried: count > 1 ? "a marker" : "the marker",
+    elsewhere: count > 1 ? "The markers that lie here lie elsewhere on your map" : aid({}).elsewhere,
+    held: (places) => (held(places).length > 0 ? `you carry ${handful(held(places))}` : ""),
     signs: "@ is the place of a marker, +marker that it is carried.",
     placed: (graph, facing) => numbers.map(() => around(graph, facing)[0]),
     sightings(graph, places, pose) {
@@ -99,10 +119,8 @@ function movable(count, areAlike = true) {
     words(places, { vertex }) {
       const lie = numbers.filter((at) => places[at] !== null).map((at) => vertex(places[at]) + DRAWN_AS[look(at)]);
       const carried = held(places);
-      const some = areAlike && count > 1 ? (carried.length > 1 ? `${carried.length} markers` : "a marker") : "the marker";
-      const hand = areAlike ? some : `the ${these(carried)}`;
       const where = lie.length > 1 ? `The markers lie at ${listed(lie)}.` : `${count > 1 ? "A" : "The"} marker lies at ${lie}.`;
-      return [...(lie.length ? [where] : []), ...(carried.length ? [`The robot carries ${hand}.`] : [])].join(" ");
+      return [...(lie.length ? [where] : []), ...(carried.length ? [`The robot carries ${handful(carried)}.`] : [])].join(" ");
     },
     text: (places, { vertex }) => places.map((place) => (place === null ? "+marker" : `@${vertex(place)}`)).join(""),
     actions(graph, places, pose) {
@@ -113,8 +131,8 @@ function movable(count, areAlike = true) {
     act(graph, places, pose, action) {
       const isDrop = action.startsWith(DROP);
       const [first] = isDrop ? held(places) : here(graph, places, pose);
-      const at = areAlike ? first : Number(action.match(/\d+$/)[0]) - 1;
-      return sorted(replaced(places, at, isDrop ? around(graph, pose)[0] : null));
+      const at = areAlike ? first ?? (count > 1 ? null : 0) : Number(action.match(/\d+$/)[0]) - 1;
+      return at === null ? null : sorted(replaced(places, at, isDrop ? around(graph, pose)[0] : null));
     },
   });
 }
@@ -127,8 +145,15 @@ function string(length) {
   const way = (places) => places.slice(1, -1);
   const free = (places) => places.at(-1);
   const behind = (graph, places) => (places.length > 2 ? graph.opposite(places.at(-2)) : null);
+  const left = (places) => length - way(places).length;
   return aid({
     thing: "the string",
+    carried: "the end of the string",
+    elsewhere: "The string is here, and on your map it is elsewhere",
+    held(places) {
+      const more = left(places) === 0 ? "all of it is laid out" : `there is string for ${left(places)} more edge${left(places) > 1 ? "s" : ""}`;
+      return free(places) === null ? `you hold its end, and ${more}` : "";
+    },
     signs: "~ are the darts by which the string leaves places, @ is the place of its free end, +string that the robot holds it.",
     placed: (graph, facing) => [around(graph, facing)[0], null],
     sightings(graph, places, pose) {
@@ -164,7 +189,10 @@ function string(length) {
       if (free(places) === null) return [DROP];
       return isAt(graph, free(places), pose) ? [PICK_UP] : [];
     },
-    act: (graph, places, pose, action) => replaced(places, places.length - 1, action === DROP ? around(graph, pose)[0] : null),
+    act(graph, places, pose, action) {
+      if (action === PICK_UP && !isAt(graph, free(places), pose)) return null;
+      return replaced(places, places.length - 1, action === DROP ? around(graph, pose)[0] : null);
+    },
     leave(graph, places, by) {
       if (free(places) !== null) return places;
       if (behind(graph, places) === by) return [...places.slice(0, -2), null];
@@ -178,6 +206,8 @@ function team(count, showsHeading) {
   const along = (graph, from, to) => (showsHeading ? ` along door ${graph.door(from, to)}` : "");
   return aid({
     thing: count > 2 ? "the other robots" : "the other robot",
+    others: count - 1,
+    elsewhere: "Robots that are apart on your map are at one place",
     signs: "&2@ is where robot 2 is, and the small number of the door by which it has come in.",
     placed: (graph, facing) => Array(count - 1).fill(facing),
     sightings(graph, poses, pose) {
@@ -211,6 +241,13 @@ function team(count, showsHeading) {
 function order(action) {
   const sent = action.match(/^send-(\d+):(\d+)$/)?.slice(1).map(Number);
   return sent === undefined ? null : { robot: sent[0], door: sent[1] };
+}
+
+/** Which robot an action moves, 0 for the explorer, and through which of its doors; null if it moves none. */
+function moverOf(action) {
+  const sent = order(action);
+  if (sent !== null) return { robot: sent.robot - 1, door: sent.door };
+  return { robot: 0, door: isDoor(action) ? Number(action) : null };
 }
 
 const AIDS = {
@@ -266,6 +303,8 @@ const AIDS = {
     text: ([along], { dart }) => (along === null ? "+marker" : `@${dart(along)}`),
     actions: (graph, [along], pose) => (along === null ? [DROP] : isAt(graph, along, pose) ? [PICK_UP] : []),
     act: (graph, places, pose, action) => [action === DROP ? pose : null],
+    carried: "the marker",
+    held: ([along]) => (along === null ? "you carry the marker" : ""),
   }),
   "string-1": string(1),
   "string-2": string(2),
@@ -277,19 +316,53 @@ const AIDS = {
 };
 
 /**
+ * What a percept shows of the aid at the robot's place, or on the edge behind it: each fact as a text, and the door that
+ * it is about, or null; and which other robots are together. That one is elsewhere is no fact.
+ */
+function factsOf({ degree, sighting }) {
+  if (sighting.startsWith(PASSED)) return [{ text: sighting, door: null }];
+  const found = (pattern) => [...sighting.matchAll(pattern)];
+  const fact = (text, door) => ({ text, door: door === undefined ? null : Number(door) });
+  const count = sighting === "marker" ? 1 : Number(sighting.match(/^(\d+) markers$/)?.[1] ?? 0);
+  const looks = sighting.endsWith(" marker") ? LOOKS.filter((look) => sighting.includes(look)) : [];
+  const strings = found(/string through doors? ([\d, and]*\d)/g).flatMap(([, doors]) => doors.match(/\d+/g));
+  const robots = found(/(robot \d) here(?: along door (\d+))?/g).map(([, robot, door]) => fact(robot, door));
+  const [second, third] = robots;
+  const turn = third?.door === null ? "" : ` along door ${(third?.door - second?.door + degree) % degree}`;
+  return [
+    ...[...Array(count).keys()].map((number) => fact(`marker ${number}`)),
+    ...looks.map((look) => fact(look)),
+    ...found(/marker along door (\d+)/g).map(([, door]) => fact("pointing", door)),
+    ...strings.map((door) => fact("string", door)),
+    ...found(/from the hand through door (\d+)/g).map(([, door]) => fact("hand", door)),
+    ...found(/fixed end|free end/g).map(([end]) => fact(end)),
+    ...robots,
+    ...(third === undefined ? [] : [fact(`robot 3 with robot 2${turn}`)]),
+    ...found(/robot \d with robot \d(?: along door \d+)?/g).map(([text]) => fact(text)),
+  ];
+}
+
+/** The numbers of doors of the places of all robots, the explorer first. */
+function degreesOf({ degree, sighting }) {
+  const degrees = [degree];
+  for (const [, place, far] of sighting.matchAll(/robot \d (here|with robot 2|elsewhere at (\d+) door)/g)) {
+    degrees.push({ here: degree, "with robot 2": degrees[1] }[place] ?? Number(far));
+  }
+  return degrees;
+}
+
+/**
  * What a percept shows about a place or an edge: a key and a value. In one world, percepts with the same key have the
- * same value as long as nobody moves the marker.
+ * same value as long as nothing of the aid moves.
  */
 function shownBy(marker, graph, pose, sighting) {
-  const vertex = `vertex ${graph.vertex(pose)}`;
-  if (marker === "directional") {
-    const door = pointedDoor(sighting);
-    return [vertex, door === null ? sighting : graph.turned(pose, door)];
+  if (marker === "undirected-edge" || marker === "directed-edge") {
+    const far = graph.opposite(pose);
+    if (far === null || pose < far) return [`edge ${pose}`, sighting];
+    return [`edge ${far}`, { [AGAINST]: ALONG, [ALONG]: AGAINST }[sighting] ?? sighting];
   }
-  if (marker !== "undirected-edge" && marker !== "directed-edge") return [vertex, sighting];
-  const far = graph.opposite(pose);
-  if (far === null || pose < far) return [`edge ${pose}`, sighting];
-  return [`edge ${far}`, { [AGAINST]: ALONG, [ALONG]: AGAINST }[sighting] ?? sighting];
+  const facts = factsOf({ degree: graph.degree(pose), sighting }).map(({ text, door }) => (door === null ? text : `${text} ${graph.turned(pose, door)}`));
+  return [`vertex ${graph.vertex(pose)}`, facts.sort().join()];
 }
 
 /** The door along which a marker points, or null. */
@@ -304,6 +377,8 @@ const perceptText = ({ degree, sighting }) => doorsText(degree) + (sighting === 
 const doorsText = (degree) => (degree === 1 ? "1 door" : `${degree} doors`);
 
 const isDoor = (action) => /^\d+$/.test(action);
+/** Whether a robot traverses an edge. */
+const isMove = (action) => moverOf(action).door !== null;
 
 /** An action in words. */
 function called(action) {
@@ -334,6 +409,11 @@ class Robot {
 
   get carries() {
     return this.placed.includes(null);
+  }
+
+  /** What it holds, in words, or nothing. */
+  get held() {
+    return this.aid.held(this.placed);
   }
 
   get parts() {

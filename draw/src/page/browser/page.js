@@ -27,8 +27,24 @@ function actionButton(action, onClick) {
   const isBack = Number(door) === 0;
   const text = door === undefined ? called(action) : isBack ? "0 back" : door;
   const button = textButton(text, onClick);
+  button.dataset.action = action;
   if (door !== undefined) button.setAttribute("aria-label", `${called(action)}${isBack ? ", back" : ""}`);
   return button;
+}
+
+/** Rows of buttons for actions: those of the robot itself, and for each other robot the doors through which it is sent. */
+function rowsOf(buttons) {
+  const rows = new Map();
+  for (const button of buttons) {
+    const robot = order(button.dataset.action)?.robot;
+    if (!rows.has(robot)) rows.set(robot, robot === undefined ? [] : [`Send robot ${robot}:`]);
+    rows.get(robot).push(button);
+  }
+  return [...rows].sort(([one], [two]) => (one ?? 0) - (two ?? 0)).map(([, content]) => {
+    const row = Object.assign(document.createElement("div"), { className: "row" });
+    row.append(...content);
+    return row;
+  });
 }
 
 /** Does what a key means: `actionOf` returns an action for the event of the key, or nothing. */

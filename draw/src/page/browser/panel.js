@@ -12,8 +12,6 @@ const ARROW = "M1 0L-0.8 0.7L-0.8 -0.7Z";
 const BAR = "M-0.3 -1H0.3V1H-0.3Z";
 /** Another robot that shows where its front is. */
 const FRONT = "M1.9 0L-1.1 1.4L-1.1 -1.4Z";
-/** The parts of an aid that are rings. */
-const RINGS = ["lying", "second", "third", "fourth"];
 
 class Panel {
   /** `onDoor` is called with the number of a door that is clicked in the picture. */

@@ -2,6 +2,7 @@
 
 const data = JSON.parse(find("#data").textContent);
 const { marker } = data;
+const aidOfGame = AIDS[marker];
 const games = data.games.map(({ world, start, ...rest }, number) => {
   const graph = Graph.of(world);
   return { ...rest, number, graph, start: graph.dart(start), picture: document.querySelectorAll(".picture")[number] };
@@ -10,11 +11,11 @@ const games = data.games.map(({ world, start, ...rest }, number) => {
 /** The world to map, and the robot that is truly in it. */
 let [game] = games;
 let robot;
-/** The walk so far, and the claims about it: each that two poses are one. A pose is a number of actions and a turn. */
+/** The walk so far, and the claims about it: each that two poses are one, as a map has them. */
 let percepts, actions, claims;
 /** The folded map, and the contradiction of the last percept with the claims, if there is one. */
 let map, contradiction;
-/** The names of the places, by the least place of the trail; a place gets one when the robot leaves it. */
+/** The names of the places, by the least place of the trail; a place gets one when a robot leaves it. */
 let names;
 let finished = false;
 
@@ -29,18 +30,30 @@ const walk = new Percepts(find(".percepts"));
 
 const movesText = (count) => (count === 1 ? "1 move" : `${count} moves`);
 const sizeText = (graph) => `${graph.vertexCount === 1 ? "1 place" : `${graph.vertexCount} places`}`;
-const movesUpTo = (time) => actions.slice(0, time).filter(isDoor).length;
+const movesUpTo = (time) => actions.slice(0, time).filter(isMove).length;
 
-/** The vertices of the map, by their names; one that the robot has just reached has none. */
-const nameOf = (vertex) => names.get(map.numbers[vertex]) ?? "?";
-const pose = () => map.poses.at(-1);
-const current = () => map.graph.vertex(pose());
+/** The robots: the explorer, which is number 0, and the others. */
+const robotNumbers = [...Array(aidOfGame.others + 1).keys()];
+const poseOf = (number) => map.robots[number].at(-1);
+const vertexOfRobot = (number) => map.graph.vertex(poseOf(number));
+const pose = () => poseOf(0);
+const current = () => vertexOfRobot(0);
 const vertexOf = (number) => map.numbers.indexOf(number);
 
-/** Where the robot was after so many actions, by the map before a contradiction. */
-function placeAfter(time) {
-  const name = time < map.poses.length ? nameOf(map.graph.vertex(map.poses[time])) : "?";
-  return name === "?" ? "this place" : name;
+/** The vertices of the map, by their names; one that a robot has just reached has none, but is where that robot is. */
+const nameOf = (vertex) => names.get(map.numbers[vertex]) ?? (vertex === current() ? "?" : `?${whoIsAt(vertex)}`);
+const whoIsAt = (vertex) => robotNumbers.findIndex((number) => vertexOfRobot(number) === vertex) + 1;
+
+/** A place in words. */
+function placeText(vertex) {
+  if (names.has(map.numbers[vertex])) return nameOf(vertex);
+  return vertex === current() ? "this place" : `the place of robot ${whoIsAt(vertex)}`;
+}
+
+/** Where a robot was after so many actions, by the map before a contradiction. */
+function placeAfter([time, number]) {
+  const before = map.robots[number][time];
+  return before === undefined ? "this place" : placeText(map.graph.vertex(before));
 }
 
 /** Folds the walk with the claims. A claim that contradicts it is not made: then the error is returned. */
@@ -55,53 +68,68 @@ function fold() {
   return contradiction;
 }
 
-function nameCurrent() {
-  const number = map.numbers[current()];
-  if (!names.has(number)) names.set(number, `v${names.size}`);
+/** Names the places of robots. */
+function nameWhere(numbers) {
+  for (const number of numbers.map((robot) => map.numbers[vertexOfRobot(robot)])) {
+    if (!names.has(number)) names.set(number, `v${names.size}`);
+  }
 }
 
-/** The robot goes through a door, or picks up or drops the marker. */
+/** Why an action is not possible. */
+function refusal(action) {
+  if (isDoor(action)) {
+    const isThere = Number(action) < percepts.at(-1).degree;
+    return isThere ? `The string is too short for door ${action}.` : `There is no door ${action} here.`;
+  }
+  const { carried } = aidOfGame;
+  if (carried === null) return "Nothing is picked up or dropped in this game.";
+  if (action.startsWith(DROP)) return `You do not carry ${carried}.`;
+  if (carried.startsWith("a ")) return `There is no marker here.`;
+  return robot.carries ? `You carry ${carried} already.` : `${carried[0].toUpperCase()}${carried.slice(1)} is not here.`;
+}
+
+/** A robot goes through a door, or the explorer does something with the aid. */
 function act(action) {
   if (finished) return say("The run has ended. Restart it to try again.");
-  if (!robot.actions().includes(action)) {
-    const carrying = robot.carries ? "You carry the marker already." : "The marker is not here.";
-    if (isDoor(action)) return say(`There is no door ${action} here.`);
-    return say(action === DROP ? "You do not carry the marker." : carrying);
-  }
-  if (contradiction === null && isDoor(action)) nameCurrent();
+  if (!robot.actions().includes(action)) return say(refusal(action));
+  const mover = moverOf(action);
+  if (contradiction === null && mover.door !== null) nameWhere([mover.robot]);
   robot.act(action);
   percepts.push(robot.percept());
   actions.push(action);
   fold();
   show();
   const at = `Move ${movesUpTo(actions.length)}, ${called(action)}: ${perceptText(percepts.at(-1))}.`;
-  say(`${at} ${contradiction === null ? placeText() : wrongClaim()}`);
+  say(`${at} ${contradiction === null ? whereText(mover.robot) : wrongClaim()}`);
 }
 
-/** Where the robot is on the map, and whether the marker shows that it is elsewhere. */
-function placeText() {
-  const isKnown = names.has(map.numbers[current()]);
-  const text = isKnown ? `On your map, this is ${nameOf(current())}.` : "On your map, this is a new place.";
-  const { sighting } = percepts.at(-1);
-  const expected = AIDS[marker].sightings(map.graph, map.placed(actions), pose());
-  if (sighting === NOTHING || expected.includes(sighting)) return text;
-  const prompt = sighting.startsWith(PASSED)
-    ? "You passed the mark, and on your map the mark is elsewhere"
-    : "The marker lies here, and on your map it lies elsewhere";
-  return `${text} ${prompt}: you know this place, so claim it.`;
+/** Where a robot is on the map, and whether the aid shows that it is elsewhere. */
+function whereText(number) {
+  const vertex = vertexOfRobot(number);
+  const where = names.has(map.numbers[vertex]) ? nameOf(vertex) : "a new place";
+  const text = `On your map, ${number === 0 ? "this" : `robot ${number + 1}`} is ${number === 0 ? "" : "at "}${where}.`;
+  const now = percepts.at(-1);
+  const placed = map.placed.at(-1);
+  if (placed === null) return `${text} Your map does not show where ${aidOfGame.thing} are: claim the place where you picked up what you carry.`;
+  const expected = aidOfGame.sightings(map.graph, placed, pose());
+  if (factsOf(now).length === 0 || expected.includes(now.sighting)) return text;
+  return `${text} ${aidOfGame.elsewhere}: you know ${number === 0 ? "this place" : "the place"}, so claim it.`;
 }
 
 const wrongClaim = () => `A claim of yours is wrong: ${contradiction.text(placeAfter)}. Withdraw it.`;
 
-/** Claims that the robot's pose is a dart of a vertex of the map. */
-function claim(vertex, index) {
+/** Claims that a robot's pose is a dart of a vertex of the map. */
+function claim(number, vertex, index) {
   if (finished) return;
   if (contradiction !== null) return say(wrongClaim());
   const dart = map.graph.dart([vertex, index]);
-  const name = nameOf(vertex);
-  if (pose() === dart) return say(`On your map, the robot came in by door ${index} of ${name}.`);
-  const time = map.poses.findIndex((at) => map.graph.vertex(at) === vertex);
-  claims.push([[time, map.graph.door(map.poses[time], dart)], [actions.length, 0]]);
+  const name = placeText(vertex);
+  const who = number === 0 ? "you" : `robot ${number + 1}`;
+  if (poseOf(number) === dart) return say(`On your map, ${who} came in by door ${index} of ${name}.`);
+  const visitor = robotNumbers.find((other) => map.robots[other].some((at) => map.graph.vertex(at) === vertex));
+  const time = map.robots[visitor].findIndex((at) => map.graph.vertex(at) === vertex);
+  const turn = map.graph.door(map.robots[visitor][time], dart);
+  claims.push([[time, turn, visitor], [actions.length, 0, number]]);
   if (fold() !== null) {
     const refused = contradiction.text(placeAfter);
     claims.pop();
@@ -110,30 +138,32 @@ function claim(vertex, index) {
     return say(`This cannot be door ${index} of ${name}: ${refused}.`);
   }
   show();
-  say(`This place is ${name}, and you came in by its door ${index}.`);
+  say(number === 0 ? `This place is ${name}, and you came in by its door ${index}.` : `Robot ${number + 1} is at ${name}, and came in by its door ${index}.`);
 }
 
 /** A claim in words. */
-function claimText([[earlier, turn], [time]]) {
-  const [vertex, index] = map.graph.end(map.graph.turned(map.poses[earlier], turn));
-  return `Move ${movesUpTo(time)}: ${nameOf(vertex)}, by its door ${index}`;
+function claimText([[earlier, turn, visitor], [time, , number]]) {
+  const [vertex, index] = map.graph.end(map.graph.turned(map.robots[visitor][earlier], turn));
+  const who = number === 0 ? "" : `robot ${number + 1} at `;
+  return `Move ${movesUpTo(time)}: ${who}${nameOf(vertex)}, by its door ${index}`;
 }
 
-function withdraw(claimed) {
+function withdraw(made) {
   if (finished) return;
-  if (claimed === undefined) return say("There is no claim to withdraw.");
-  const text = claimText(claimed);
-  claims = claims.filter((other) => other !== claimed);
+  if (made === undefined) return say("There is no claim to withdraw.");
+  const text = claimText(made);
+  claims = claims.filter((other) => other !== made);
   fold();
   if (contradiction === null) nameEarlier();
   show();
-  say(contradiction === null ? `Withdrawn: ${text}. ${placeText()}` : wrongClaim());
+  say(contradiction === null ? `Withdrawn: ${text}. ${whereText(0)}` : wrongClaim());
 }
 
-/** Places that were one with others need names again, but for the one where the robot is. */
+/** Places that were one with others need names again, but for those where robots are. */
 function nameEarlier() {
+  const spared = robotNumbers.map(vertexOfRobot);
   for (const [vertex, number] of map.numbers.entries()) {
-    if (vertex !== current() && !names.has(number)) names.set(number, `v${names.size}`);
+    if (!spared.includes(vertex) && !names.has(number)) names.set(number, `v${names.size}`);
   }
 }
 
@@ -174,12 +204,11 @@ function finish() {
   if (contradiction !== null) return say(wrongClaim());
   const fault = faultOf(map.graph, pose(), game.graph, game.start, robot.pose);
   if (fault?.kind === "open") {
-    const open = nameOf(fault.vertex);
-    return say(`The map is not complete: a door of ${open === "?" ? "this place" : open} leads nowhere.`);
+    return say(`The map is not complete: a door of ${placeText(fault.vertex)} leads nowhere.`);
   }
   finished = true;
   nameEarlier();
-  nameCurrent();
+  nameWhere(robotNumbers);
   const other = fault === null ? otherWorld() : null;
   const { tone, heading, reason } = fault === null ? rightText(other) : { tone: "diverged", heading: "Wrong map", reason: faultText(fault) };
   find(".verdict").className = `verdict ${tone}`;
@@ -272,7 +301,7 @@ function compare(right) {
   const own = { name: right ? "You" : "You (wrong map)", actions };
   const [shortest] = game.walks.filter(({ isShortest }) => isShortest);
   const rows = [...(shortest ? [shortest] : []), own, ...game.walks.filter(({ isShortest }) => !isShortest)];
-  const moves = ({ actions: taken }) => taken.filter(isDoor).length;
+  const moves = ({ actions: taken }) => taken.filter(isMove).length;
   const cell = (text, style) => Object.assign(document.createElement("td"), { textContent: text, className: style });
   const drawnRows = rows.map((taken) => {
     const row = document.createElement("tr");
@@ -290,11 +319,12 @@ function compare(right) {
 
 function show() {
   const now = percepts.at(-1);
-  here.show(now, robot.carries);
-  write(".play .percept", perceptText(now) + (robot.carries ? "; you carry the marker" : ""));
+  here.show(now, robot.held);
+  write(".play .percept", perceptText(now) + (robot.held && `; ${robot.held}`));
   write(".moves", movesText(movesUpTo(actions.length)));
   document.body.classList.toggle("begun", actions.length > 0);
-  const parts = contradiction === null ? AIDS[marker].parts(map.graph, map.placed(actions)) : [];
+  const placed = contradiction === null ? map.placed.at(-1) : null;
+  const parts = placed === null ? [] : aidOfGame.parts(map.graph, placed);
   const { graph, numbers } = map;
   drawing.show({ graph, numbers, names: numbers.map((_, vertex) => nameOf(vertex)), pose: contradiction === null ? pose() : null, parts });
   find(".map").classList.toggle("differs", contradiction !== null);
@@ -317,11 +347,19 @@ function leadsTo(dart) {
   return far === null ? "open" : `to door ${map.graph.index(far)} of ${nameOf(map.graph.vertex(far))}`;
 }
 
-/** Where a part of the marker is, in words, if it is at a place or behind its doors. */
-function partText({ dart, drawn }) {
+/** Where a part of the aid is, in words, if it is at a place or behind its doors. */
+function partText({ dart, drawn, number }) {
   const door = map.graph.index(dart);
-  const texts = { pointing: `the marker along door ${door}`, edge: `the mark behind door ${door}`, arrow: `the mark behind door ${door}` };
-  return texts[drawn] ?? (drawn === "second" ? "the second marker" : "the marker");
+  const texts = {
+    pointing: `the marker along door ${door}`,
+    edge: `the mark behind door ${door}`,
+    arrow: `the mark behind door ${door}`,
+    string: `string through door ${door}`,
+  };
+  if (number !== undefined) return `robot ${number}, in by door ${door}`;
+  if (marker.startsWith("string")) return texts[drawn] ?? (drawn === "lying" ? "the free end" : "the fixed end");
+  const look = { second: "second ", third: "third ", fourth: "fourth " }[drawn];
+  return texts[drawn] ?? `the ${look ?? (marker.endsWith("distinct") ? "first " : "")}marker`;
 }
 
 function showList(parts) {
@@ -342,16 +380,20 @@ function showWalk() {
 
 /** A button for each action. */
 function showActions() {
-  const row = find(".doors");
-  const focused = [...row.children].indexOf(document.activeElement);
+  const rows = find(".doors");
+  const focused = [...rows.querySelectorAll("button")].indexOf(document.activeElement);
   const buttons = robot.actions().map((action) => actionButton(action, () => act(action)));
-  row.replaceChildren(...buttons);
-  if (focused >= 0) buttons[Math.min(focused, buttons.length - 1)].focus();
+  rows.replaceChildren(...rowsOf(buttons));
+  const shown = rows.querySelectorAll("button");
+  if (focused >= 0) shown[Math.min(focused, shown.length - 1)].focus();
 }
+
+/** The number of the robot about which a claim is made. */
+const claimed = () => Number(find("#who").value);
 
 /** The places that the robot may be at, but for the one where it is on the map. */
 function showClaim() {
-  const others = contradiction === null ? [...map.numbers.keys()].filter((vertex) => vertex !== current()) : [];
+  const others = contradiction === null ? [...map.numbers.keys()].filter((vertex) => vertex !== vertexOfRobot(claimed())) : [];
   const options = others.map((vertex) => {
     const text = `${nameOf(vertex)}, ${doorsText(map.graph.degrees[vertex])}`;
     return Object.assign(document.createElement("option"), { value: map.numbers[vertex], textContent: text });
@@ -360,7 +402,8 @@ function showClaim() {
   find("#place").replaceChildren(...options);
   if (options.some(({ value }) => value === chosen)) find("#place").value = chosen;
   showDarts();
-  for (const id of ["#claim", "#place", "#dart"]) find(id).disabled = finished || options.length === 0;
+  find("#claim-way").textContent = `and ${claimed() === 0 ? "I" : "it"} came in by its door`;
+  for (const id of ["#claim", "#place", "#dart", "#who"]) find(id).disabled = finished || options.length === 0;
   find("#finish").setAttribute("aria-disabled", String(finished));
 }
 
@@ -379,12 +422,12 @@ function showDarts() {
 /** The claims, each with a button that withdraws it. */
 function showClaims() {
   find(".claims").hidden = claims.length === 0;
-  const items = claims.map((claimed) => {
-    const button = textButton("Withdraw", () => withdraw(claimed));
-    button.setAttribute("aria-label", `Withdraw: ${claimText(claimed)}`);
+  const items = claims.map((made) => {
+    const button = textButton("Withdraw", () => withdraw(made));
+    button.setAttribute("aria-label", `Withdraw: ${claimText(made)}`);
     button.setAttribute("aria-disabled", String(finished));
     const item = document.createElement("li");
-    item.append(claimText(claimed), button);
+    item.append(claimText(made), button);
     return item;
   });
   find(".claims ul").replaceChildren(...items);
@@ -397,7 +440,9 @@ function choose(number, index) {
   find("#place").value = number;
   showDarts();
   find("#dart").value = index;
-  say(`Claim that this place is ${nameOf(vertexOf(number))}, and that you came in by its door ${index}?`);
+  const name = placeText(vertexOf(number));
+  const [where, who] = claimed() === 0 ? [`this place is ${name}`, "you"] : [`robot ${claimed() + 1} is at ${name}`, "it"];
+  say(`Claim that ${where}, and that ${who} came in by its door ${index}?`);
   find("#claim").focus();
 }
 
@@ -405,9 +450,17 @@ function choose(number, index) {
 
 function submitClaim() {
   if (find("#place").value === "") return say("There is no other place on your map.");
-  claim(vertexOf(Number(find("#place").value)), Number(find("#dart").value));
+  claim(claimed(), vertexOf(Number(find("#place").value)), Number(find("#dart").value));
 }
 
+{
+  const option = (number) => {
+    const textContent = number === 0 ? "I know this place: it is" : `I know where robot ${number + 1} is: at`;
+    return Object.assign(document.createElement("option"), { value: number, textContent });
+  };
+  find("#who").append(...robotNumbers.map(option));
+  find("#who").addEventListener("change", showClaim);
+}
 find("#place").addEventListener("change", showDarts);
 find(".claim").addEventListener("submit", (event) => {
   event.preventDefault();
@@ -433,8 +486,14 @@ const keys = {
   r: restart,
 };
 if (games.length > 1) keys.n = nextWorld;
-if (marker === MOVABLE) Object.assign(keys, { p: () => act(PICK_UP), d: () => act(DROP) });
-for (const [selector, isUsed] of [[".of-another", games.length > 1], [".of-movable", marker === MOVABLE]]) {
+for (const text of document.querySelectorAll(".thing")) text.textContent = aidOfGame.thing;
+/** The first action with a verb: of markers that look different, each has its own. */
+const firstOf = (verb) => robot.actions().find((action) => action.startsWith(verb)) ?? verb;
+const isCarried = aidOfGame.carried !== null;
+if (isCarried) Object.assign(keys, { p: () => act(firstOf(PICK_UP)), d: () => act(firstOf(DROP)) });
+const isTeam = aidOfGame.others > 0;
+const uses = { ".of-another": games.length > 1, ".of-carried": isCarried, ".of-team": isTeam, "#who": isTeam, "#claim-text": !isTeam };
+for (const [selector, isUsed] of Object.entries(uses)) {
   find(selector).hidden = !isUsed;
 }
 onKey((event) => {

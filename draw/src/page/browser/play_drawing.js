@@ -84,7 +84,11 @@ class MapDrawing {
       number,
       name: names[place],
       here: graph.darts(place).indexOf(pose),
-      rings: parts.filter(({ dart, drawn }) => graph.vertex(dart) === place && ["lying", "second"].includes(drawn)),
+      rings: parts.filter(({ dart, drawn }) => graph.vertex(dart) === place && RINGS.includes(drawn)),
+      robots: graph.darts(place).flatMap((dart, index) => {
+        const there = parts.filter((part) => part.number !== undefined && part.dart === dart);
+        return there.map((part, before) => ({ ...part, index, before: before + (dart === pose ? 1 : 0) }));
+      }),
       doors: graph.darts(place).map((dart) => ({
         isOpen: graph.opposite(dart) === null,
         isPointed: drawnAt(dart, "pointing") !== undefined,
@@ -92,6 +96,9 @@ class MapDrawing {
       })),
     }));
     this.links = links;
+    const strings = parts.filter((part) => part.drawn === "string").map((part) => Math.min(part.dart, graph.opposite(part.dart)));
+    // For each link, how often string runs over it.
+    this.strings = first.map((dart) => strings.filter((strung) => strung === dart).length);
     // For each link, the sign in its middle, and whether it points from the first end to the other one.
     this.signs = first.map((dart) => {
       const ends = [dart, graph.opposite(dart)].map((end) => drawnAt(end, "edge", "arrow"));
@@ -156,17 +163,23 @@ class MapDrawing {
     const box = [x - width / this.scale / 2, y - height / this.scale / 2, width / this.scale, height / this.scale];
     this.svg.setAttribute("viewBox", box.map((n) => n.toFixed(1)).join(" "));
     this.svg.classList.toggle("enlarged", this.scale > 1);
-    const edges = this.links.flatMap((link, index) => this.edge(this.curve(this.shown, link, size), this.signs[index], size));
+    const edges = this.links.flatMap((link, index) => this.edge(this.curve(this.shown, link, size), this.signs[index], this.strings[index], size));
     const discs = this.places.map((place, index) => this.disc(place, this.shown[index], size));
-    const robots = this.places.flatMap((place, index) => (place.here < 0 ? [] : [this.robot(place, this.shown[index], size)]));
+    const robots = this.places.flatMap((place, index) => [
+      ...(place.here < 0 ? [] : [this.robot(place, this.shown[index], size)]),
+      ...place.robots.map((other) => this.other(place, other, this.shown[index], size)),
+    ]);
     const reaches = this.places.flatMap((place, index) => this.reaches(place, this.shown[index], size));
     this.svg.replaceChildren(...[edges, discs, robots, reaches].map((layer) => drawn("g", {}, ...layer)));
   }
 
-  /** A hallway, with the mark in its middle if it has one. */
-  edge(curve, { kind, isForward }, size) {
+  /** A hallway, with the mark in its middle if it has one, and the string that runs over it. */
+  edge(curve, { kind, isForward }, strings, size) {
     const [from, p, q, to] = curve.map((at) => `${at.x.toFixed(1)} ${at.y.toFixed(1)}`);
-    const path = drawn("path", { d: `M${from}C${p} ${q} ${to}` });
+    const shape = `M${from}C${p} ${q} ${to}`;
+    const path = drawn("path", { d: shape });
+    // Thicker where it runs once more.
+    if (strings > 0) return [drawn("path", { class: "string", d: shape, style: `stroke-width: ${(3 + 3 * strings) * size}` }), path];
     if (kind === undefined) return [path];
     path.classList.add("marked");
     const [a, b, c, d] = curve;
@@ -185,7 +198,7 @@ class MapDrawing {
   disc({ name, here, rings, doors }, spot, size) {
     const center = { x: 0, y: 0 };
     const parts = [
-      ...rings.map((ring, index) => drawn("circle", { class: `ring ${ring.drawn}`, r: DISC + 5 + 4 * index })),
+      ...rings.map((ring, index) => drawn("circle", { class: `ring ${ring.drawn}`, r: DISC + 5 + 3.2 * index })),
       drawn("circle", { class: here >= 0 ? "disc here" : "disc", r: DISC }),
       drawn("text", { class: "name", y: 5, "font-size": 14 }, name),
     ];
@@ -209,6 +222,16 @@ class MapDrawing {
     };
     const shape = `M${corner(Math.PI, 9)}L${corner(0.8, 9)}L${corner(-0.8, 9)}Z`;
     return this.group(spot, size, [drawn("path", { class: "robot", d: shape })]);
+  }
+
+  /** Another robot, with its number, beyond those in the same door. */
+  other({ doors }, { index, before, drawn: kind, number }, spot, size) {
+    const angle = doorAngle(spot, index, doors.length);
+    const { x, y } = polar({ x: 0, y: 0 }, angle, DISC + 12 + 17 * before);
+    const turn = `rotate(${((angle * 180) / Math.PI).toFixed(1)})`;
+    const shape = kind === "robot" ? drawn("path", { d: "M-13 0L8 9L8 -9Z", transform: turn }) : drawn("circle", { r: 8 });
+    const text = drawn("text", { y: 3.6, "font-size": SMALLEST }, String(number));
+    return this.group(spot, size, [drawn("g", { class: "other-robot", transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})` }, shape, text)]);
   }
 
   /** Where doors can be pressed. */

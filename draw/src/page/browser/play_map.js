@@ -12,31 +12,35 @@ class Contradiction extends Error {
 
 class FoldedMap {
   /**
-   * `percepts`: the degree and the sighting at the start and after each action; `actions`: doors as texts, and those on
-   * the marker; `claims`: pairs of poses that are one, each the number of actions before it and a turn.
+   * `percepts`: the degree and the sighting at the start and after each action; `actions`: doors as texts, and those of
+   * the aid; `claims`: pairs of poses that are one, each the number of actions before it, a turn, and which robot it is of.
+   * Robot 0 is the explorer.
    */
   constructor(marker, percepts, actions, claims) {
     this.first = [];
     this.degree = [];
-    /** For each place of the trail, the number of actions before the robot first came there. */
-    this.time = [];
+    /** For each place of the trail, the number of actions before a robot first came there, and which one. */
+    this.reached = [];
     this.place = [];
     this.parent = [];
     this.far = [];
-    this.trailPoses = [this.add(percepts[0].degree, 0)];
-    for (const [step, action] of actions.entries()) this.step(action, percepts[step + 1].degree, step + 1);
+    const start = this.add(percepts[0].degree, [0, 0]);
+    /** The poses of each robot at the start and after each action. */
+    this.trail = [...Array(AIDS[marker].others + 1)].map(() => [start]);
+    for (const [step, action] of actions.entries()) this.step(action, degreesOf(percepts[step + 1]), step + 1);
     for (const [one, other] of claims) this.unite(this.posed(one), this.posed(other));
     this.build();
-    this.checkSightings(marker, percepts, actions);
+    this.followAid(AIDS[marker], actions);
+    this.checkSightings(marker, percepts);
   }
 
   /** Adds a place, and returns its entry dart. */
-  add(degree, time) {
+  add(degree, reached) {
     const entry = this.place.length;
     const number = this.first.length;
     this.first.push(entry);
     this.degree.push(degree);
-    this.time.push(time);
+    this.reached.push(reached);
     for (let index = 0; index < degree; index += 1) {
       this.place.push(number);
       this.parent.push(entry + index);
@@ -45,16 +49,17 @@ class FoldedMap {
     return entry;
   }
 
-  step(action, degree, time) {
-    const at = this.trailPoses.at(-1);
-    if (!isDoor(action)) return this.trailPoses.push(at);
-    const from = this.turned(at, Number(action));
+  step(action, degrees, time) {
+    const { robot, door } = moverOf(action);
+    for (const poses of this.trail) poses.push(poses.at(-1));
+    if (door === null) return;
+    const from = this.turned(this.trail[robot][time], door);
     if (this.far[from] === null) {
-      const entry = this.add(degree, time);
+      const entry = this.add(degrees[robot], [time, robot]);
       this.far[from] = entry;
       this.far[entry] = from;
     }
-    return this.trailPoses.push(this.far[from]);
+    this.trail[robot][time] = this.far[from];
   }
 
   /** The dart some places clockwise from another. */
@@ -64,9 +69,9 @@ class FoldedMap {
     return first + ((dart - first + places) % this.degree[place]);
   }
 
-  /** The pose after some actions, turned. */
-  posed([actions, turn]) {
-    return this.turned(this.trailPoses[actions], turn);
+  /** The pose of a robot after some actions, turned. */
+  posed([actions, turn, robot]) {
+    return this.turned(this.trail[robot][actions], turn);
   }
 
   find(dart) {
@@ -85,7 +90,7 @@ class FoldedMap {
       if (this.find(a) === this.find(b)) continue;
       const places = [this.place[a], this.place[b]];
       const [here, there] = places.map((place) => this.degree[place]);
-      const [then, now] = places.map((place) => this.time[place]);
+      const [then, now] = places.map((place) => this.reached[place]);
       if (here !== there) {
         throw new Contradiction((name) => `${name(then)} has ${doorsText(here)}, ${name(now)} has ${there}`);
       }
@@ -116,7 +121,7 @@ class FoldedMap {
     const darts = new Map();
     for (const [number, entry] of this.first.entries()) {
       const roots = [...Array(this.degree[number]).keys()].map((turn) => this.find(entry + turn));
-      const name = this.time[number];
+      const name = this.reached[number];
       if (new Set(roots).size < roots.length) {
         throw new Contradiction((of) => `two doors of ${of(name)} would be the same door`);
       }
@@ -130,42 +135,49 @@ class FoldedMap {
       if (far === dart) throw new Contradiction(() => "a hallway would have only one end");
       this.graph.far[dart] = far;
     }
-    this.poses = this.trailPoses.map((pose) => darts.get(this.find(pose)));
+    this.robots = this.trail.map((poses) => poses.map((pose) => darts.get(this.find(pose))));
+    [this.poses] = this.robots;
   }
 
-  /** Looks for two percepts that one place, or one edge, cannot have. */
-  checkSightings(marker, percepts, actions) {
-    let known = new Map();
-    let carries = false;
-    for (const [time, { sighting }] of percepts.entries()) {
-      const action = actions[time - 1];
-      // A marker that is moved is in another place.
-      if (action === PICK_UP || action === DROP) [known, carries] = [new Map(), action === PICK_UP];
-      if (carries) continue;
-      const [key, value] = shownBy(marker, this.graph, this.poses[time], sighting);
-      const before = known.get(key) ?? { value, time, sighting };
-      if (before.value !== value) {
-        const seen = (at, what) => `“${what}” at ${at}`;
-        throw new Contradiction(
-          (name) => `you perceived ${seen(name(before.time), before.sighting)} and ${seen(name(time), sighting)}`,
-        );
-      }
-      known.set(key, before);
+  /** Where the parts of the aid are on the map at the start and after each action; null if it does not show them. */
+  followAid(aid, actions) {
+    const { graph, poses } = this;
+    this.placed = [aid.placed(graph, poses[0])];
+    for (const [time, action] of actions.entries()) {
+      const before = this.placed[time];
+      const move = isDoor(action) ? aid.leave : aid.act;
+      const what = isDoor(action) ? [graph.turned(poses[time], Number(action))] : [poses[time], action];
+      this.placed.push(before && move(graph, before, ...what));
     }
   }
 
-  /** The place of the marker after all actions. */
-  placed(actions) {
-    const moved = actions.findLastIndex((action) => action === PICK_UP || action === DROP);
-    if (moved < 0) return [this.poses[0]];
-    return [actions[moved] === DROP ? this.poses[moved + 1] : null];
+  /** Looks for two percepts that one place, or one edge, cannot have, and for one without what lies there on the map. */
+  checkSightings(marker, percepts) {
+    const { graph, placed, poses } = this;
+    let known = new Map();
+    for (const [time, { degree, sighting }] of percepts.entries()) {
+      // What is moved is in another place.
+      if (placed[time] === null || String(placed[time]) !== String(placed[time - 1])) known = new Map();
+      const [key, value] = shownBy(marker, graph, poses[time], sighting);
+      const before = known.get(key) ?? { value, time, sighting };
+      const seen = (name, at, what) => `“${what}” at ${name([at, 0])}`;
+      if (before.value !== value) {
+        throw new Contradiction((name) => `you perceived ${seen(name, before.time, before.sighting)} and ${seen(name, time, sighting)}`);
+      }
+      known.set(key, before);
+      const [expected] = placed[time] === null ? [NOTHING] : AIDS[marker].sightings(graph, placed[time], poses[time]);
+      const facts = factsOf({ degree, sighting });
+      if (!factsOf({ degree, sighting: expected }).every(({ text, door }) => facts.some((it) => it.text === text && it.door === door))) {
+        throw new Contradiction((name) => `you perceived ${seen(name, time, sighting)}, and on your map there would be “${expected}”`);
+      }
+    }
   }
 }
 
 /** The claims that a directional marker proves: each sighting of it is one pose. */
 function markerClaims(percepts) {
   const [start, ...later] = percepts.map(({ sighting }) => pointedDoor(sighting));
-  return later.flatMap((door, step) => (door === null ? [] : [[[0, start], [step + 1, door]]]));
+  return later.flatMap((door, step) => (door === null ? [] : [[[0, start, 0], [step + 1, door, 0]]]));
 }
 
 /** The folded trail of a walk with a directional marker. The walk determines its world exactly if no dart is open. */

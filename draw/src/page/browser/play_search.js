@@ -57,14 +57,15 @@ class WorldSearch {
     /** What the robot sensed at each vertex when it first came there. */
     this.sensed = [];
     if (!this.fitsSize(this.percepts[0].degree)) return null;
-    const pose = this.add(0);
-    return (this.fits(0, pose, [pose]) ? this.replay(0, pose, [pose]) : null) ?? this.found;
+    const pose = this.add(0, 0);
+    const placed = AIDS[this.marker].placed(this.graph, pose);
+    return (this.fits(0, pose, placed) ? this.replay(0, pose, placed) : null) ?? this.found;
   }
 
-  /** Adds the place where the robot is after so many actions, and returns its first dart. */
-  add(time) {
+  /** Adds the place where a robot is after so many actions, and returns its first dart. */
+  add(time, robot) {
     this.sensed.push(this.percepts[time].sighting);
-    return this.graph.add(this.percepts[time].degree);
+    return this.graph.add(degreesOf(this.percepts[time])[robot]);
   }
 
   /** Whether one more place with so many doors is possible. */
@@ -93,17 +94,24 @@ class WorldSearch {
   }
 
   /** Goes on with the walk after so many actions. */
-  replay(before, from, marked) {
-    let [time, pose, placed] = [before, from, marked];
+  replay(before, from, aidBefore) {
+    const aid = AIDS[this.marker];
+    let [time, pose, placed] = [before, from, aidBefore];
     while (time < this.actions.length) {
       const action = this.actions[time];
-      if (isDoor(action)) {
-        const out = this.graph.turned(pose, Number(action));
-        const far = this.graph.opposite(out);
-        if (far === null) return this.arrive(time + 1, out, placed);
-        pose = far;
+      const { robot, door } = moverOf(action);
+      if (door === null) {
+        if (!aid.actions(this.graph, placed, pose).includes(action)) return null;
+        placed = aid.act(this.graph, placed, pose, action);
       } else {
-        placed = [action === DROP ? pose : null];
+        const out = this.graph.turned(robot === 0 ? pose : placed[robot - 1], door);
+        const left = robot === 0 ? aid.leave(this.graph, placed, out) : placed;
+        if (left === null) return null;
+        const [stays, others] = [pose, left];
+        const after = (dart) => (robot === 0 ? [dart, others] : [stays, replaced(others, robot - 1, dart)]);
+        const far = this.graph.opposite(out);
+        if (far === null) return this.arrive(time + 1, robot, out, after);
+        [pose, placed] = after(far);
       }
       time += 1;
       if (!this.fits(time, pose, placed)) return null;
@@ -111,9 +119,9 @@ class WorldSearch {
     return this.close();
   }
 
-  /** The robot leaves by an open dart. */
-  arrive(time, out, placed) {
-    const { degree } = this.percepts[time];
+  /** A robot leaves by an open dart. Where it comes in by a dart, `after` has the explorer's pose and the places of the aid. */
+  arrive(time, robot, out, after) {
+    const degree = degreesOf(this.percepts[time])[robot];
     if (this.depth === SEARCH_DEPTH) this.steps = 0;
     const known = this.graph.open().filter((dart) => dart !== out && this.graph.degree(dart) === degree);
     const visit = (dart) => {
@@ -121,14 +129,15 @@ class WorldSearch {
       this.steps -= 1;
       this.depth += 1;
       this.graph.join(out, dart);
-      const found = this.fits(time, dart, placed) ? this.replay(time, dart, placed) : null;
+      const [pose, placed] = after(dart);
+      const found = this.fits(time, pose, placed) ? this.replay(time, pose, placed) : null;
       this.graph.part(out, dart);
       this.depth -= 1;
       return found;
     };
     const visitNew = () => {
       if (!this.fitsSize(degree)) return null;
-      const found = visit(this.add(time));
+      const found = visit(this.add(time, robot));
       this.graph.removeLast();
       this.sensed.pop();
       return found;
@@ -197,6 +206,7 @@ class WorldSearch {
   explains(world) {
     const robot = Robot.start(this.marker, world, 0);
     return this.percepts.every(({ degree, sighting }, time) => {
+      if (time > 0 && !robot.actions().includes(this.actions[time - 1])) return false;
       if (time > 0) robot.act(this.actions[time - 1]);
       const now = robot.percept();
       return now.degree === degree && now.sighting === sighting;

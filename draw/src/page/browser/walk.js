@@ -178,10 +178,7 @@ function distinguish() {
 
 // Buttons and keys.
 
-/**
- * An action that only one of the robots can take is disabled. The doors through which another robot is sent are a row of
- * their own.
- */
+/** An action that only one of the robots can take is disabled. */
 function showActions() {
   const row = find(".doors");
   const focused = document.activeElement.dataset?.action;
@@ -190,32 +187,21 @@ function showActions() {
   const actions = [...longer, ...other.filter((action) => !longer.includes(action))];
   const buttons = actions.map((action) => {
     const button = actionButton(action, () => byHand(action));
-    button.dataset.action = action;
     button.setAttribute("aria-disabled", String(!shared(action)));
     return button;
   });
-  const rows = new Map();
-  for (const button of buttons) {
-    const robot = order(button.dataset.action)?.robot;
-    if (!rows.has(robot)) rows.set(robot, robot === undefined ? [] : [`Send robot ${robot}:`]);
-    rows.get(robot).push(button);
-  }
-  const groups = [...rows].sort(([one], [two]) => (one ?? 0) - (two ?? 0)).map(([, content]) => {
-    const group = Object.assign(document.createElement("div"), { className: "row" });
-    group.append(...content);
-    return group;
-  });
-  row.replaceChildren(...groups);
+  row.replaceChildren(...rowsOf(buttons));
   if (focused !== undefined) (buttons.find(({ dataset }) => dataset.action === focused) ?? buttons[0]).focus();
   find("#undo").setAttribute("aria-disabled", String(steps.length === 1));
 }
 
 /** The keys of this marker: for each its names, how it is written, what it does. */
 function keys() {
-  const { aid, graph, pose, placed } = initial[0].robot;
-  const hasKeys = aid.actions(graph, placed, pose).some((action) => [DROP, PICK_UP].includes(action));
+  // Of markers that look different, the first one that is here or is carried.
+  const firstOf = (verb) => here()[0].robot.actions().find((action) => action.startsWith(verb)) ?? verb;
+  const key = (name, verb) => [[name.toLowerCase()], name, called(verb), () => byHand(firstOf(verb))];
   return [
-    ...(hasKeys ? [[["d"], "D", called(DROP), () => byHand(DROP)], [["p"], "P", called(PICK_UP), () => byHand(PICK_UP)]] : []),
+    ...(initial[0].robot.aid.carried === null ? [] : [key("D", DROP), key("P", PICK_UP)]),
     ...(walk?.length ? [[["w"], "W", "the walk that distinguishes them", distinguish]] : []),
     [[" "], "Space", "random walk", randomWalk],
     [["Backspace", "u"], "Backspace", "undo", undo],

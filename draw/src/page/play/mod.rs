@@ -52,7 +52,7 @@ fn picture(world: &NamedWorld, marker: AidKind) -> String {
     let (title, caption, start) = ("", "", Some(facing_of(world)));
     let drawn = WorldPicture { start, marker, title, caption, ..WorldPicture::from(world) };
     let place = drawn.marker_place().map(|place| format!("In this picture, {}. ", escaped(&place)));
-    let first = if marker.moves() { "The marker is where it was at first. " } else { "" };
+    let first = if marker.moves() { "That is how it was at first. " } else { "" };
     format!(
         "<template class=\"picture\">{}<p class=\"faint\">{}{first}The names are those of the world, not of your map. \
          Doors are numbered clockwise from the first of each place.</p></template>\n",
