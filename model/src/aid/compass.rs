@@ -7,8 +7,8 @@
 use thiserror::Error;
 
 use crate::{
+    direction::Direction,
     embedded_graph::{Dart, EmbeddedGraph},
-    floor_plan::Direction,
     marker::{Marker, MarkerPart},
     percept::{CompassView, Door, Sighting},
 };
