@@ -13,7 +13,7 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
 };
 
-pub use ball::Ball;
+pub use ball::{Ball, BehindDoors};
 
 /// A way out of a vertex: the `i`-th dart clockwise from the one by which the robot came in. Door 0
 /// is the way back.

@@ -15,9 +15,12 @@ pub struct Ball([u32; 4]);
 /// The rooted form of a ball: for each vertex in the order of discovery, breadth first, what is behind each of its doors,
 /// clockwise from the door by which it was discovered; at the robot's vertex, from its entry door.
 struct Patch {
-    behind: Vec<Vec<Option<Place>>>,
+    behind: Vec<BehindDoors>,
     distance: Vec<u32>,
 }
+
+/// For each door of a vertex, the vertex and the door behind it, if they are seen.
+pub type BehindDoors = Vec<Option<(usize, usize)>>;
 
 /// A vertex of a patch, and a door there.
 type Place = (usize, usize);
@@ -49,7 +52,7 @@ impl Ball {
 
     /// For each vertex, breadth first from the robot's, the vertex and the door behind each of its doors, if it is seen;
     /// clockwise from the door by which it was discovered. `None` if the ball is too large.
-    pub fn behind(self) -> Option<Vec<Vec<Option<(usize, usize)>>>> {
+    pub fn behind(self) -> Option<Vec<BehindDoors>> {
         Patch::read(self.0).map(|(patch, _)| patch.behind)
     }
 
@@ -77,7 +80,7 @@ impl fmt::Display for Ball {
         let Some(behind) = self.behind() else {
             return write!(out, "sees too much");
         };
-        let junction = |(here, doors): (usize, &Vec<Option<Place>>)| {
+        let junction = |(here, doors): (usize, &BehindDoors)| {
             let edges_to =
                 |there: usize| doors.iter().flatten().filter(|far| far.0 == there).count();
             let door = |far: &Option<Place>| match far {
@@ -131,7 +134,7 @@ impl Patch {
             });
             found.next()
         };
-        let behind = |darts: &Vec<D>| -> Vec<_> {
+        let behind = |darts: &Vec<D>| -> BehindDoors {
             darts.iter().map(|&dart| opposite(dart).and_then(place)).collect()
         };
         Some(Self { behind: vertices.iter().map(behind).collect(), distance })
