@@ -191,6 +191,31 @@ fn with_aids_that_move_the_same_worlds_are_counted_and_indistinguishable() {
 }
 
 #[test]
+fn with_binoculars_the_same_worlds_are_counted_and_indistinguishable() {
+    let aids = ["binoculars-1", "binoculars-2"];
+    for (class, edges) in [("multigraph", "4"), ("simple", "7"), ("corridor", "8"), ("planar", "7")]
+    {
+        let command = format!("ambiguity.py {class} {edges} {}", aids.join(" "));
+        let Some(oracle) = oracle(&command) else { return };
+        assert_eq!(counterexamples(class, edges, &aids), oracle, "{class}");
+    }
+}
+
+/// The numbers are those of the tests in `model/src/ambiguity/quotient.rs`.
+#[test]
+fn with_a_compass_the_same_worlds_are_counted_and_indistinguishable() {
+    let counted = |class: &str, edges: usize| {
+        let text = oracle(&format!("compass.py {class} {edges}"))?;
+        let numbers = |line: &str| line.strip_prefix(class).unwrap().trim().to_owned();
+        Some(text.lines().map(numbers).collect::<Vec<_>>())
+    };
+    let Some(plane) = counted("plane", 5) else { return };
+    assert_eq!(plane, ["1 2 0", "2 6 0", "3 22 0", "4 92 0", "5 420 0", "smallest none"]);
+    let all = counted("multigraph", 4).unwrap();
+    assert_eq!(all, ["1 4 2", "2 15 9", "3 60 2", "4 300 11", "smallest 2 1"]);
+}
+
+#[test]
 fn with_every_aid_the_shortest_walks_are_as_long() {
     walks_are_as_long(Class::Multigraph, 2);
     walks_are_as_long(Class::Simple, 4);

@@ -10,7 +10,7 @@
 //! * [`enumerate`]: every start and every world of a size, once;
 //! * [`folding`]: what a walk proves about its world;
 //! * [`marker`]: what each kind of fixed marker adds to a percept (Sections 2.2, 2.3);
-//! * [`aid`]: marking aids that move: markers to carry, a string, other robots;
+//! * [`aid`]: marking aids that move: markers to carry, a string, other robots; and other senses;
 //! * [`driving`]: scenes, junction estimates and Algorithm 2 (Sections 3 and 4);
 //! * [`floor_plan`]: hallways with geometry (Section 2.4);
 //! * [`world`]: the trait with everything that a robot can sense and do;
@@ -48,6 +48,7 @@ pub mod ambiguity;
 pub mod check;
 mod clone_in_place;
 pub mod counts;
+mod direction;
 pub mod driving;
 pub mod embedded_graph;
 pub mod enumerate;

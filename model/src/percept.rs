@@ -1,14 +1,19 @@
 //! What a robot perceives at a vertex and how it moves: degrees, doors, sightings, door sequences
 //! and the way back. Section 2.1, "Robot motion and perception".
 
+mod ball;
+
 use std::{cmp::Ordering, fmt};
 
 use serde::{Serialize, Serializer};
 
 use crate::{
     counts::counted,
+    direction::Direction,
     embedded_graph::{Dart, EmbeddedGraph},
 };
+
+pub use ball::{Ball, BehindDoors};
 
 /// A way out of a vertex: the `i`-th dart clockwise from the one by which the robot came in. Door 0
 /// is the way back.
@@ -61,6 +66,44 @@ pub enum Sighting {
     String(StringView),
     /// The other robots of the team.
     Team(TeamView),
+    /// What is near, through binoculars.
+    Ball(Ball),
+    /// Where the doors lead, by a compass.
+    Compass(CompassView),
+}
+
+/// The direction of each of at most four doors, from door 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CompassView([Option<Direction>; 4]);
+
+impl CompassView {
+    /// Directions after the fourth are left out.
+    pub fn new(directions: impl IntoIterator<Item = Direction>) -> Self {
+        let mut view = Self::default();
+        for (shown, direction) in view.0.iter_mut().zip(directions) {
+            *shown = Some(direction);
+        }
+        view
+    }
+
+    pub fn directions(self) -> impl Iterator<Item = Direction> {
+        self.0.into_iter().flatten()
+    }
+
+    fn seen_from(self, entry: Door, degree: u32) -> Self {
+        let doors = (0..degree).map(|door| (entry.0 + door) % degree);
+        Self::new(doors.filter_map(|door| self.0.get(door as usize).copied().flatten()))
+    }
+}
+
+/// `doors to the south, the north and the east`.
+impl fmt::Display for CompassView {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let names: Vec<_> = self.directions().map(|direction| format!("the {direction}")).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let plural = if names.len() == 1 { "" } else { "s" };
+        write!(out, "door{plural} to {}", listed(&names))
+    }
 }
 
 /// Some of at most eight markers that look different; at least one.
@@ -230,6 +273,8 @@ impl fmt::Display for Sighting {
             Self::PassedAgainst => write!(out, "past the mark, against its arrow"),
             Self::String(view) => write!(out, "{view}"),
             Self::Team(view) => write!(out, "{view}"),
+            Self::Ball(ball) => write!(out, "{ball}"),
+            Self::Compass(view) => write!(out, "{view}"),
         }
     }
 }
@@ -263,7 +308,9 @@ impl Percept {
     #[inline]
     #[must_use]
     pub fn seen_from(self, entry: Door) -> Self {
-        use Sighting::{Nothing, Passed, PassedAgainst, PassedAlong, Pointing, String, Team};
+        use Sighting::{
+            Ball, Compass, Nothing, Passed, PassedAgainst, PassedAlong, Pointing, String, Team,
+        };
         let seen_from = |door: Door| door.seen_from(entry, self.degree);
         let sighting = match self.sighting {
             Pointing(door) => Pointing(seen_from(door)),
@@ -273,6 +320,8 @@ impl Percept {
                 ..view
             }),
             Team(view) => Team(view.seen_from(entry, self.degree)),
+            Ball(ball) => Ball(ball.seen_from(entry.0)),
+            Compass(view) => Compass(view.seen_from(entry, self.degree)),
             Passed | PassedAlong | PassedAgainst if entry != Door::BACK => Nothing,
             same => same,
         };

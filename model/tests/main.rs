@@ -71,6 +71,7 @@ mod moving;
 mod optimum;
 mod perception;
 mod random_buildings;
+mod senses;
 mod stories;
 mod verdicts;
 mod worlds;

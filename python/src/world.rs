@@ -14,7 +14,6 @@ use toposlam_model::{
         world_file::{self, WorldFileErrorKind},
     },
     isomorphism::{Bijection, canonical, code, discovery_order},
-    percept::DoorSet,
 };
 
 use crate::error::{error, guarded};
@@ -283,8 +282,8 @@ pub(crate) fn check_seen(py: Python<'_>, aid: impl Aid, graph: &EmbeddedGraph) -
     if aid.is_seen_everywhere(graph) {
         return Ok(());
     }
-    let (name, most) = (aid.name(), DoorSet::MOST);
-    let text = format!("the world has a vertex with more than {most} doors, the most for {name}");
+    let (name, place) = (aid.name(), aid.unseen_place());
+    let text = format!("the world has {place}, the most for {name}");
     Err(error(py, "SizeError", text))
 }
 

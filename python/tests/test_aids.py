@@ -64,6 +64,15 @@ def test_one_vertex_hides_what_has_no_front():
         assert ts.compare(planar, other, marker=aid).walk is not None
 
 
+def test_a_robot_with_binoculars_sees_what_is_near():
+    ring = {f"v{at}": [f"v{(at + 4) % 5}", f"v{(at + 1) % 5}"] for at in range(5)}
+    sent = ts.World(ring, start=("v0", 0)).robot("binoculars-1")
+    assert sent.percept.marker == {"ball": [[(1, 0), (2, 0)], [(0, 0), None], [(0, 1), None]]}
+    assert str(sent.percept) == "2 doors, sees 3 junctions: 1 2, 0 -, 0 -"
+    pair = ts.counterexample("binoculars-1", cls="simple", edges=5).smallest
+    assert (pair.one.edge_count, pair.other.edge_count) == (4, 5)
+
+
 def test_the_search_takes_an_aid():
     assert ts.counterexample("movable-3", cls="multigraph", edges=3).sizes[1].ambiguous == 2
     assert ts.counterexample("team-2", cls="multigraph", edges=3).smallest is None

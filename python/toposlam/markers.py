@@ -35,6 +35,8 @@ MARKERS = (
     "team-2-round",
     "team-3",
     "team-3-round",
+    "binoculars-1",
+    "binoculars-2",
 )
 """The names of the marking aids."""
 

@@ -7,7 +7,6 @@ use toposlam_model::{
     embedded_graph::EmbeddedGraph,
     mapping::MappingAlgorithm,
     marker::Directional,
-    percept::DoorSet,
 };
 
 use super::CliError;
@@ -68,10 +67,9 @@ pub(super) fn check_seen<'g>(
     match graphs.into_iter().position(|graph| !aid.is_seen_everywhere(graph)) {
         None => Ok(()),
         Some(index) => {
-            let (name, most, number) = (aid.name(), DoorSet::MOST, index + 1);
-            let cause = format!(
-                "world {number} has a vertex with more than {most} doors, which is the most for the marking aid {name}"
-            );
+            let (name, place, number) = (aid.name(), aid.unseen_place(), index + 1);
+            let cause =
+                format!("world {number} has {place}, which is the most for the marking aid {name}");
             Err(CliError::in_file(path, cause))
         }
     }

@@ -34,6 +34,8 @@ AIDS_AT_VERTEX = ["movable-2", "movable-3", "movable-4",
                   "string-1", "string-2", "string-3"]
 AIDS_ALONG_DART = ["movable-directional", "team-2", "team-2-round", "team-3", "team-3-round"]
 AIDS = AIDS_AT_VERTEX + AIDS_ALONG_DART
+# No markers, but what the robot sees around it; only if named, too.
+SENSES = ["binoculars-1", "binoculars-2"]
 CLASSES = ["multigraph", "simple", "corridor", "planar"]
 
 # Embedded graphs with 1, 2, 3, ... edges: OEIS A170946, and A006394 (simple, planar).
@@ -180,7 +182,7 @@ def vertices_by_dart(graph):
 def place_of(kind, graph, facing):
     """Where the marker is when it was placed by this facing dart."""
     vertex, other = vertices_by_dart(graph), graph[0][facing]
-    if kind == "none":
+    if kind == "none" or kind in SENSES:
         return ()
     if kind in ("undirected", "movable", *AIDS_AT_VERTEX):
         return vertex[facing]
@@ -198,7 +200,7 @@ def place_of(kind, graph, facing):
 def moved(kind, place, number):
     if kind in ("directional", "directed-edge", *AIDS_ALONG_DART):
         return number[place]
-    if kind in ("none", "undirected", "movable", "undirected-edge", *AIDS_AT_VERTEX):
+    if kind in ("none", "undirected", "movable", "undirected-edge", *AIDS_AT_VERTEX, *SENSES):
         return tuple(sorted(number[dart] for dart in place))
     ends = [tuple(sorted(number[dart] for dart in end)) for end in place]
     return tuple(sorted(ends) if kind == "two-identical" else ends)
@@ -223,7 +225,7 @@ def placed_worlds(kind, graph):
 
 def start_poses(kind, graph, facing):
     vertex, other = vertices_by_dart(graph), graph[0][facing]
-    if kind == "none":
+    if kind == "none" or kind in SENSES:
         return set(range(len(vertex)))
     if kind in ("undirected", "movable", "two-distinct", *AIDS_AT_VERTEX):
         return set(vertex[facing])
@@ -254,6 +256,24 @@ def start_states(kind, world):
     return {(pose,) * number for pose in poses}  # a team
 
 
+def ball(graph, pose, radius):
+    """What lies within so many edges of a pose: the darts of the vertices that are near, numbered from
+    the pose; of each its clockwise next, and its opposite if that is one of them."""
+    opposite, clockwise = graph
+    vertex = vertices_by_dart(graph)
+    near = {vertex[pose]}
+    for _ in range(radius):
+        near |= {vertex[opposite[dart]] for here in near for dart in here}
+    inside = [other if vertex[other] in near else None for other in opposite]
+    order, number = [pose], {pose: 0}
+    for dart in order:
+        for other in (clockwise[dart], inside[dart]):
+            if other is not None and other not in number:
+                number[other] = len(order)
+                order.append(other)
+    return tuple((number[clockwise[dart]], number.get(inside[dart])) for dart in order)
+
+
 def states(kind, world):
     """The table of a placed world: for each state its percept and the states to which the actions
     lead, the doors first; and the start states."""
@@ -276,6 +296,8 @@ def states(kind, world):
         here = vertex[pose]
         if kind == "none":
             return None
+        if kind in SENSES:
+            return ball(graph, pose, int(kind[-1]))
         if kind == "undirected":
             return here == first
         if kind == "directional":
@@ -560,7 +582,7 @@ def check(most_edges):
         by_edges = graphs_checked(class_name, most_edges)
         for edges, graphs in by_edges.items():
             assert graphs == embedded_graphs_by_pairing(class_name, edges), (class_name, edges)
-        for kind in KINDS + AIDS:
+        for kind in KINDS + AIDS + SENSES:
             worlds = []
             for edges, graphs in by_edges.items():
                 if kind in AIDS and edges > 2:
@@ -583,7 +605,7 @@ def main(arguments):
     elif len(arguments) > 3 and arguments[0] == "--walks":
         walks(arguments[1], int(arguments[2]), arguments[3:])
     elif (len(arguments) >= 2 and arguments[0] in CLASSES and arguments[1].isdigit()
-            and int(arguments[1]) >= 1 and all(kind in KINDS + AIDS for kind in arguments[2:])):
+            and int(arguments[1]) >= 1 and all(kind in KINDS + AIDS + SENSES for kind in arguments[2:])):
         report(arguments[0], int(arguments[1]), arguments[2:] or KINDS)
     else:
         sys.exit(__doc__)

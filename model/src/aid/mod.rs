@@ -7,8 +7,15 @@
 //! * [`pointer`](mod@pointer): a directional marker that is carried;
 //! * [`string`]: a string that is paid out along edges (Wang, Jenkin and Dymond);
 //! * [`team`]: other robots (Bender and Slonim, 1994).
+//!
+//! Other senses are aids, too, that neither move nor lie anywhere:
+//!
+//! * [`binoculars`](mod@binoculars): the robot sees what is near (Chalopin, Godard and Naudin, 2015);
+//! * [`compass`](mod@compass): it sees in which direction each door leads, in a world whose corridors have directions.
 
 mod action;
+pub mod binoculars;
+pub mod compass;
 pub mod markers;
 pub mod pointer;
 pub mod string;
@@ -30,6 +37,7 @@ use crate::{
 };
 
 pub use action::{Action, AidAction, RefusedAction, UnknownAction};
+use binoculars::Binoculars;
 use markers::MovableMarkers;
 use pointer::MovablePointer;
 use string::LaidString;
@@ -93,6 +101,11 @@ pub trait Aid: Sync {
     /// Whether it can be seen at every vertex of a graph. Otherwise nothing that is found there is a proof.
     fn is_seen_everywhere(&self, _graph: &EmbeddedGraph) -> bool {
         true
+    }
+
+    /// In words, a place where it [cannot be seen](Self::is_seen_everywhere).
+    fn unseen_place(&self) -> String {
+        "a vertex".to_owned()
     }
 
     /// Whether what it adds to a percept depends on the vertices of its darts and of the pose, and on the
@@ -250,20 +263,22 @@ pub enum AidKind {
     Pointer(MovablePointer),
     String(LaidString),
     Team(Team),
+    Binoculars(Binoculars),
 }
 
-/// An expression with the aid of a kind that moves, or with a fixed marker.
+/// An expression with an aid of another kind, or with a fixed marker.
 macro_rules! with_aid {
-    ($kind:expr, $marker:ident => $fixed:expr, $aid:ident => $moving:expr) => {
+    ($kind:expr, $marker:ident => $fixed:expr, $aid:ident => $other:expr) => {
         match $kind {
             AidKind::Fixed(marker) => {
                 let $marker: &dyn Marker = marker;
                 $fixed
             }
-            AidKind::Markers($aid) => $moving,
-            AidKind::Pointer($aid) => $moving,
-            AidKind::String($aid) => $moving,
-            AidKind::Team($aid) => $moving,
+            AidKind::Markers($aid) => $other,
+            AidKind::Pointer($aid) => $other,
+            AidKind::String($aid) => $other,
+            AidKind::Team($aid) => $other,
+            AidKind::Binoculars($aid) => $other,
         }
     };
 }
@@ -278,9 +293,9 @@ macro_rules! with_any_aid {
     };
 }
 
-/// The fixed markers, and then the aids that move. Each has finitely many states in a graph, so all of them can be
+/// The fixed markers, then the aids that move, and then other senses. Each has finitely many states in a graph, so all of them can be
 /// searched; [a string as long as it takes](LaidString::of_any_length) has not, and is not among them.
-pub const AIDS: [AidKind; 22] = [
+pub const AIDS: [AidKind; 24] = [
     AidKind::Fixed(MarkerKind::NoMarker),
     AidKind::Fixed(MarkerKind::Undirected),
     AidKind::Fixed(MarkerKind::Directional),
@@ -303,6 +318,8 @@ pub const AIDS: [AidKind; 22] = [
     AidKind::Team(Team::of(2, false)),
     AidKind::Team(Team::of(3, true)),
     AidKind::Team(Team::of(3, false)),
+    AidKind::Binoculars(Binoculars::of(1)),
+    AidKind::Binoculars(Binoculars::of(2)),
 ];
 
 /// The aids with few states: the fixed markers, and the one that can be carried.
@@ -426,6 +443,10 @@ macro_rules! dispatched {
 
             fn is_seen_everywhere(&self, graph: &EmbeddedGraph) -> bool {
                 $with!(self, _marker => true, aid => aid.is_seen_everywhere(graph))
+            }
+
+            fn unseen_place(&self) -> String {
+                $with!(self, marker => Aid::unseen_place(&marker), aid => aid.unseen_place())
             }
 
             fn is_local(&self) -> bool {

@@ -146,6 +146,10 @@ impl Aid for LaidString {
         graph.vertices().all(|vertex| graph.degree(vertex) <= DoorSet::MOST)
     }
 
+    fn unseen_place(&self) -> String {
+        format!("a vertex with more than {} doors", DoorSet::MOST)
+    }
+
     fn moves(&self) -> bool {
         true
     }

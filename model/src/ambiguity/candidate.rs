@@ -72,6 +72,17 @@ fn push_label(bytes: &mut Vec<u8>, (percept, held): StateLabel) {
                 }
             }
         }
+        Sighting::Ball(ball) => {
+            push(&[9]);
+            push(&ball.words());
+        }
+        Sighting::Compass(view) => {
+            push(&[10]);
+            // There are as many as doors.
+            for direction in view.directions() {
+                push(&[direction as u32]);
+            }
+        }
     }
 }
 

@@ -33,10 +33,15 @@ impl<'a> Comparison<'a> {
         (other, other_facing): (&'a EmbeddedGraph, Dart),
     ) -> Self {
         let aid = aid.into();
-        let worlds = [
+        Self::between([
             GraphWorld::with_aid(one, aid, facing),
             GraphWorld::with_aid(other, aid, other_facing),
-        ];
+        ])
+    }
+
+    /// Compares two worlds in which the same kind of aid shows what belongs to the world, such as a
+    /// [compass](crate::aid::compass::Compass).
+    pub fn between(worlds: [PlacedRobot<'a>; 2]) -> Self {
         Self { worlds, partition: OnceCell::new() }
     }
 

@@ -9,60 +9,17 @@ mod walls;
 
 use std::collections::HashMap;
 
+pub use crate::direction::Direction;
 pub use error::FloorPlanError;
 pub use floor::Rectangle;
 pub use walls::{BuildingWall, walls};
 
 use crate::{
+    direction::TOLERANCE,
     driving::visit::JunctionShape,
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     similar::similar_name,
 };
-
-/// The largest difference between equal lengths, in metres.
-const TOLERANCE: f64 = 1e-6;
-
-/// Where a door of a junction leads, in clockwise order from north.
-// paper: env.right-angles
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Direction {
-    North,
-    East,
-    South,
-    West,
-}
-
-impl Direction {
-    /// All four, clockwise from north.
-    pub const ALL: [Self; 4] = [Self::North, Self::East, Self::South, Self::West];
-
-    #[must_use]
-    pub fn reversed(self) -> Self {
-        Self::ALL[(self as usize + 2) % 4]
-    }
-
-    /// The unit vector, x to the east and y to the north.
-    pub fn vector(self) -> [f64; 2] {
-        match self {
-            Self::North => [0.0, 1.0],
-            Self::East => [1.0, 0.0],
-            Self::South => [0.0, -1.0],
-            Self::West => [-1.0, 0.0],
-        }
-    }
-
-    /// The direction from one position to another; `None` if it is not along an axis.
-    pub fn between(from: [f64; 2], to: [f64; 2]) -> Option<Self> {
-        let [x, y] = [to[0] - from[0], to[1] - from[1]];
-        match (x.abs() <= TOLERANCE, y.abs() <= TOLERANCE) {
-            (true, false) if y > 0.0 => Some(Self::North),
-            (true, false) => Some(Self::South),
-            (false, true) if x > 0.0 => Some(Self::East),
-            (false, true) => Some(Self::West),
-            _ => None,
-        }
-    }
-}
 
 // paper: env.junction-types
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

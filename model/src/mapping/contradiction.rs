@@ -144,7 +144,9 @@ impl fmt::Display for Seen<'_> {
             Sighting::Nothing => write!(out, "without the marker"),
             Sighting::Pointing(_) => write!(out, "with the {sighting}"),
             Sighting::Lying(1) => write!(out, "with a marker lying there"),
-            Sighting::String(_) | Sighting::Team(_) => write!(out, "with {sighting}"),
+            Sighting::String(_) | Sighting::Team(_) | Sighting::Ball(_) | Sighting::Compass(_) => {
+                write!(out, "with {sighting}")
+            }
             _ => write!(out, "with a sign of another kind of marker ({sighting})"),
         }
     }

@@ -71,7 +71,7 @@ impl MappingAlgorithm {
     pub fn all() -> impl Iterator<Item = Self> {
         let string = AidKind::String(LaidString::of_any_length());
         let moving = AIDS.into_iter().chain([string]).filter_map(|aid| match aid {
-            AidKind::Fixed(_) => None,
+            AidKind::Fixed(_) | AidKind::Binoculars(_) => None,
             AidKind::Markers(markers) => Some(Self::MovableMarkers(markers)),
             AidKind::Pointer(pointer) => Some(Self::MovablePointer(pointer)),
             AidKind::String(string) => Some(Self::String(string)),

@@ -34,6 +34,8 @@ pub(super) fn percept_line(percept: Percept) -> String {
             let robots: Vec<_> = others.into_iter().filter_map(other_robot).collect();
             json!({ "robots": robots }).to_string()
         }
+        Sighting::Ball(ball) => json!({ "ball": ball.behind() }).to_string(),
+        Sighting::Compass(view) => json!(view.to_string()).to_string(),
     };
     format!("{{\"percept\":{{\"degree\":{degree},\"marker\":{marker}}}}}\n")
 }

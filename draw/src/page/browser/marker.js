@@ -62,6 +62,12 @@ const aid = (own) => ({
 });
 
 const HELD = "The robot carries the marker.";
+const NO_MARKER = {
+  sightings: () => [NOTHING],
+  starts: (graph) => [...graph.far.keys()],
+  parts: () => [],
+  words: () => "There is no marker.",
+};
 /** One marker that lies at a vertex. */
 const LYING = {
   sightings: (graph, [place], pose) => [isAt(graph, place, pose) ? "marker" : NOTHING],
@@ -237,6 +243,34 @@ function team(count, showsHeading) {
   });
 }
 
+/** No marker, but a robot that sees the ball of this radius. A page has none in a world in which it is not seen everywhere. */
+function binoculars(radius) {
+  const clockwise = (graph, dart) => [...Array(graph.degree(dart)).keys()].map((door) => graph.turned(dart, door));
+  return aid({
+    ...NO_MARKER,
+    sightings(graph, places, pose) {
+      const vertices = [{ darts: clockwise(graph, pose), distance: 0 }];
+      const place = (dart) => vertices.findIndex(({ darts }) => darts.includes(dart));
+      for (const { darts, distance } of vertices) {
+        if (distance === radius) break;
+        for (const far of darts.map((dart) => graph.opposite(dart))) {
+          if (place(far) < 0) vertices.push({ darts: clockwise(graph, far), distance: distance + 1 });
+        }
+      }
+      const behind = ({ darts }, here) => {
+        const theres = darts.map((dart) => place(graph.opposite(dart)));
+        const door = (there, at) => {
+          const isOneOfSeveral = there === here || theres.filter((other) => other === there).length > 1;
+          return isOneOfSeveral ? `${there}:${vertices[there].darts.indexOf(graph.opposite(darts[at]))}` : there;
+        };
+        return theres.map((there, at) => (there < 0 ? "-" : door(there, at))).join(" ");
+      };
+      const junctions = vertices.length === 1 ? "1 junction" : `${vertices.length} junctions`;
+      return [`sees ${junctions}: ${vertices.map(behind).join(", ")}`];
+    },
+  });
+}
+
 /** The robot that an action sends, and the door, or null. */
 function order(action) {
   const sent = action.match(/^send-(\d+):(\d+)$/)?.slice(1).map(Number);
@@ -251,12 +285,7 @@ function moverOf(action) {
 }
 
 const AIDS = {
-  none: aid({
-    sightings: () => [NOTHING],
-    starts: (graph) => [...graph.far.keys()],
-    parts: () => [],
-    words: () => "There is no marker.",
-  }),
+  none: aid(NO_MARKER),
   undirected: aid(LYING),
   directional: aid(POINTING),
   "undirected-edge": aid({
@@ -313,6 +342,8 @@ const AIDS = {
   "team-2-round": team(2, false),
   "team-3": team(3, true),
   "team-3-round": team(3, false),
+  "binoculars-1": binoculars(1),
+  "binoculars-2": binoculars(2),
 };
 
 /**
