@@ -91,7 +91,7 @@ mod tests {
     use std::path::Path;
 
     use toposlam_model::{
-        aid::{AIDS, FEW_STATES},
+        aid::{AIDS, AidKind, FEW_STATES},
         format::world_file,
     };
 
@@ -119,7 +119,7 @@ mod tests {
     /// So no theorem contradicts another.
     #[test]
     fn one_theorem_decides_about_each_aid_and_class() {
-        for aid in AIDS {
+        for aid in AIDS.into_iter().filter(|aid| aid.marks()) {
             for class in Class::ALL {
                 let is_about = |row: &&MarkerTheorem| {
                     row.aids.contains(&aid.name()) && row.classes.contains(&class)
@@ -128,7 +128,7 @@ mod tests {
                 assert_eq!(rows.count(), 1, "{aid:?} {class}");
             }
         }
-        let known = AIDS.map(|aid| aid.name());
+        let known = AIDS.map(AidKind::name);
         let mut named = MARKER_THEOREMS.iter().flat_map(|row| row.aids);
         assert!(named.all(|name| known.contains(name)));
     }

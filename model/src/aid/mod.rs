@@ -339,6 +339,11 @@ impl AidKind {
         Aid::moves(&self)
     }
 
+    /// Whether it is for marking places; other senses are not.
+    pub fn marks(self) -> bool {
+        !matches!(self, Self::Binoculars(_))
+    }
+
     /// The fixed marker that it is.
     pub fn fixed(self) -> Option<MarkerKind> {
         if let Self::Fixed(marker) = self { Some(marker) } else { None }

@@ -47,9 +47,11 @@ fn shown(aid: AidKind, sighting: Sighting) -> Vec<String> {
                 }
             })
             .collect(),
-        Sighting::Passed | Sighting::PassedAlong | Sighting::PassedAgainst => {
-            panic!("no aid that moves marks an edge")
-        }
+        Sighting::Passed
+        | Sighting::PassedAlong
+        | Sighting::PassedAgainst
+        | Sighting::Ball(_)
+        | Sighting::Compass(_) => panic!("no aid that moves shows {sighting}"),
     }
 }
 
@@ -57,7 +59,7 @@ fn shown(aid: AidKind, sighting: Sighting) -> Vec<String> {
 fn candidates(aid: AidKind, graph: &EmbeddedGraph) -> Vec<Action> {
     let doors = || (0..=graph.dart_count() as u32).map(Door);
     let own: Vec<AidAction> = match aid {
-        AidKind::Fixed(_) => Vec::new(),
+        AidKind::Fixed(_) | AidKind::Binoculars(_) => Vec::new(),
         AidKind::Markers(markers) if !markers.are_alike() => (1..=markers.count())
             .flat_map(|one| [AidAction::PickUpMarker(one), AidAction::DropMarker(one)])
             .collect(),
@@ -120,17 +122,18 @@ fn the_aids_of_coq_show_and_allow_what_those_of_toposlam_do() {
     let some = starts(Class::Multigraph, 4..=4).into_iter().step_by(13);
     let (mut seed, mut walks) = (11, Vec::new());
     for graph in starts(Class::Multigraph, 1..=3).into_iter().chain(some) {
-        for aid in AIDS.into_iter().filter(|aid| aid.moves()) {
+        for aid in AIDS.into_iter().filter(Aid::moves) {
             walks.push(walk(aid, &graph, 30, &mut seed));
         }
     }
-    let lines: String = walks.iter().map(|[line, _]| format!("{line}\n")).collect();
+    let lines: Vec<&str> = walks.iter().map(|[line, _]| line.as_str()).collect();
+    let lines = lines.join("\n") + "\n";
     let extraction = ["AidExtraction.vo", "aids", "compare/aids.ml"];
     let proved = run_extracted(&folder, extraction, &lines);
     assert_eq!(proved.lines().count(), walks.len());
     for ([line, running], proved) in walks.iter().zip(proved.lines()) {
         assert_eq!(proved, running, "{line}");
     }
-    let moving = AIDS.into_iter().filter(|aid| aid.moves()).count();
+    let moving = AIDS.into_iter().filter(Aid::moves).count();
     assert_eq!(walks.len(), moving * (86 + 55));
 }

@@ -79,7 +79,7 @@ pub(super) fn write(
     let sizes = Class::ALL.map(|class| full_size(class).min(edges.unwrap_or(usize::MAX)));
     let mut rows: Vec<Row> = Vec::new();
     output::make_folder(folder)?;
-    for aid in AIDS {
+    for aid in AIDS.into_iter().filter(|aid| aid.marks()) {
         let mut found = Vec::new();
         for (class, edges) in Class::ALL.into_iter().zip(sizes) {
             let Some(edges) = searched(aid, class, edges) else {
