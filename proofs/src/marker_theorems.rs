@@ -91,7 +91,7 @@ mod tests {
     use std::path::Path;
 
     use toposlam_model::{
-        aid::{AIDS, FEW_STATES},
+        aid::{AIDS, AidKind, FEW_STATES},
         format::world_file,
     };
 
@@ -128,7 +128,7 @@ mod tests {
                 assert_eq!(rows.count(), 1, "{aid:?} {class}");
             }
         }
-        let known = AIDS.map(|aid| aid.name());
+        let known = AIDS.map(AidKind::name);
         let mut named = MARKER_THEOREMS.iter().flat_map(|row| row.aids);
         assert!(named.all(|name| known.contains(name)));
     }
