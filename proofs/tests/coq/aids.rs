@@ -120,17 +120,18 @@ fn the_aids_of_coq_show_and_allow_what_those_of_toposlam_do() {
     let some = starts(Class::Multigraph, 4..=4).into_iter().step_by(13);
     let (mut seed, mut walks) = (11, Vec::new());
     for graph in starts(Class::Multigraph, 1..=3).into_iter().chain(some) {
-        for aid in AIDS.into_iter().filter(|aid| aid.moves()) {
+        for aid in AIDS.into_iter().filter(Aid::moves) {
             walks.push(walk(aid, &graph, 30, &mut seed));
         }
     }
-    let lines: String = walks.iter().map(|[line, _]| format!("{line}\n")).collect();
+    let mut lines = walks.iter().map(|[line, _]| line.as_str()).collect::<Vec<_>>().join("\n");
+    lines.push('\n');
     let extraction = ["AidExtraction.vo", "aids", "compare/aids.ml"];
     let proved = run_extracted(&folder, extraction, &lines);
     assert_eq!(proved.lines().count(), walks.len());
     for ([line, running], proved) in walks.iter().zip(proved.lines()) {
         assert_eq!(proved, running, "{line}");
     }
-    let moving = AIDS.into_iter().filter(|aid| aid.moves()).count();
+    let moving = AIDS.into_iter().filter(Aid::moves).count();
     assert_eq!(walks.len(), moving * (86 + 55));
 }
