@@ -126,8 +126,8 @@ fn the_aids_of_coq_show_and_allow_what_those_of_toposlam_do() {
             walks.push(walk(aid, &graph, 30, &mut seed));
         }
     }
-    let lines: Vec<&str> = walks.iter().map(|[line, _]| line.as_str()).collect();
-    let lines = lines.join("\n") + "\n";
+    let mut lines = walks.iter().map(|[line, _]| line.as_str()).collect::<Vec<_>>().join("\n");
+    lines.push('\n');
     let extraction = ["AidExtraction.vo", "aids", "compare/aids.ml"];
     let proved = run_extracted(&folder, extraction, &lines);
     assert_eq!(proved.lines().count(), walks.len());
