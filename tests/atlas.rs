@@ -84,7 +84,7 @@ fn the_atlas_contains_what_the_search_finds() {
 #[test]
 fn aids_with_the_same_pairs_have_the_same_files() {
     let table = read("worlds/atlas/README.md");
-    for &aid in AIDS.iter().filter(|aid| !FEW_STATES.contains(aid)) {
+    for aid in AIDS.into_iter().filter(|aid| aid.marks() && !FEW_STATES.contains(aid)) {
         for class in Class::ALL {
             let theorem = about(aid.name(), class).unwrap();
             if theorem.suffices {

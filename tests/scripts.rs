@@ -228,7 +228,7 @@ fn robots_with_each_aid_do_on_a_page_what_the_specification_says() {
 fn a_map_with_true_claims_shows_what_the_robot_perceives() {
     let (mut cases, mut expected, mut seed) = (Vec::new(), Vec::new(), 5);
     for graph in starts(1..=4).into_iter().step_by(5) {
-        for aid in AIDS {
+        for aid in AIDS.into_iter().filter(|aid| aid.marks()) {
             let length = if aid.moves() { 24 } else { 12 };
             let walk = Walk::random(&graph, aid, length, &mut seed);
             let sightings = walk.percepts.iter().map(|percept| json!(percept.sighting));

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use toposlam_draw::page::{MOST_VERTICES, NoGame, games_of, play_page, random_games};
-use toposlam_model::format::named_world::NamedWorld;
+use toposlam_model::{aid::AidKind, format::named_world::NamedWorld};
 
 use crate::{
     error::{error, guarded, internal, interrupted},
@@ -19,7 +19,7 @@ pub(crate) fn world_page(
     facing: u32,
     marker: &str,
 ) -> PyResult<String> {
-    let (marker, facing) = (named_aid(py, marker)?, world.dart(py, facing)?);
+    let (marker, facing) = (marking_aid(py, marker)?, world.dart(py, facing)?);
     let count = world.0.graph.vertex_count();
     if count > MOST_VERTICES {
         let text = format!("the world has {count} vertices; a page can have {MOST_VERTICES}");
@@ -38,7 +38,7 @@ pub(crate) fn random_page(
     seed: u64,
     marker: &str,
 ) -> PyResult<String> {
-    let marker = named_aid(py, marker)?;
+    let marker = marking_aid(py, marker)?;
     let games = games(py, class_, edges, seed)?;
     guarded(py, || Ok(py.detach(|| play_page(&games, marker))))
 }
@@ -53,6 +53,16 @@ pub(crate) fn random_world(
 ) -> PyResult<CoreWorld> {
     let first = games(py, class_, edges, seed)?.into_iter().next();
     first.map(CoreWorld).ok_or_else(|| internal(py))
+}
+
+/// The aid with this name, if it marks places.
+fn marking_aid(py: Python<'_>, name: &str) -> PyResult<AidKind> {
+    let aid = named_aid(py, name)?;
+    if !aid.marks() {
+        let text = format!("`{name}` does not mark places; a page needs an aid that does");
+        return Err(error(py, "UnknownMarkerError", text));
+    }
+    Ok(aid)
 }
 
 fn games(py: Python<'_>, class: &str, edges: usize, seed: u64) -> PyResult<Vec<NamedWorld>> {

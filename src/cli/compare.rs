@@ -17,12 +17,12 @@ use toposlam_model::{
 };
 
 use super::{
-    CliError, Outcome,
+    CliError, Outcome, aid_kinds,
     exit_codes::help_end,
     input,
     json::print_line,
     mapping_marker::check_seen,
-    marker_kinds, output,
+    output,
     progress::Progress,
     text::{counted, print_columns, print_paragraph, vertices},
     walk_page,
@@ -64,7 +64,7 @@ pub(super) struct CompareArguments {
     b: PathBuf,
 
     /// Marking aid [default: directional, if both worlds have a start]
-    #[arg(long, visible_alias = "aid", value_name = "KIND", value_parser = marker_kinds())]
+    #[arg(long, visible_alias = "aid", value_name = "KIND", value_parser = aid_kinds())]
     marker: Option<AidKind>,
 
     /// Where the robot starts in A; a second --start is for B [default: the starts in the files]

@@ -15,11 +15,11 @@ use toposlam_model::{
 };
 
 use super::{
-    CliError, Outcome,
+    CliError, Outcome, aid_kinds,
     ci_report::{CiCase, CiOptions},
     cluster::{ClusterOptions, ClusterSession, SharedOutput},
     exit_codes::help_end,
-    marker_kinds, output,
+    output,
     progress::Progress,
     text::counted,
     thread_option::ThreadOption,
@@ -61,7 +61,7 @@ The smallest pair is the one whose larger world is smallest. A world is ambiguou
 }))]
 pub(super) struct CounterexampleArguments {
     /// Marking aid (repeatable) [default: the fixed markers and movable]
-    #[arg(long = "marker", visible_alias = "aid", value_name = "KIND", value_parser = marker_kinds())]
+    #[arg(long = "marker", visible_alias = "aid", value_name = "KIND", value_parser = aid_kinds())]
     markers: Vec<AidKind>,
 
     /// Class of worlds: multigraph, simple, corridor or planar

@@ -10,7 +10,7 @@ use std::{
 
 use toposlam_model::aid::AidKind;
 
-use super::{CliError, Outcome, exit_codes::help_end, input, marker_kinds, output, write_drawing};
+use super::{CliError, Outcome, aid_kinds, exit_codes::help_end, input, output, write_drawing};
 use view::ViewOptions;
 
 use crate::picture::{WorldPicture, svg};
@@ -37,7 +37,7 @@ pub(super) struct DrawArguments {
     start: Option<String>,
     /// Kind of marker [default: the one in the file, or else directional; with --pose, none]. With --pose, a
     /// directional one lies at the plan's start, along the facing hallway, or, without a start, at the first L
-    #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
+    #[arg(long, value_name = "KIND", value_parser = aid_kinds())]
     marker: Option<AidKind>,
     /// The file to write: .svg, .png or .dot [default: standard output, as SVG]
     #[arg(short, long, value_name = "FILE")]

@@ -115,10 +115,20 @@ fn run_choices(text: &str) -> Result<RunChoices, String> {
         .ok_or_else(|| "write default, all, or all=N with a number of states".to_owned())
 }
 
-/// Parses the name of a marking aid. `--help` and errors list all of them.
-fn marker_kinds() -> impl TypedValueParser<Value = AidKind> {
-    let kinds = AIDS.map(|aid| PossibleValue::new(aid.name()).help(aid.about()));
-    PossibleValuesParser::new(kinds).try_map(|name| aid::named(&name))
+/// Parses the name of an aid. `--help` and errors list all of them.
+fn aid_kinds() -> impl TypedValueParser<Value = AidKind> {
+    one_of(AIDS)
+}
+
+/// Parses the name of an aid that marks places. `--help` and errors list all of them.
+fn marking_aids() -> impl TypedValueParser<Value = AidKind> {
+    one_of(AIDS.into_iter().filter(|aid| aid.marks()))
+}
+
+fn one_of(aids: impl IntoIterator<Item = AidKind>) -> impl TypedValueParser<Value = AidKind> {
+    let named = |aid: AidKind| PossibleValue::new(aid.name()).help(aid.about());
+    let names: Vec<_> = aids.into_iter().map(named).collect();
+    PossibleValuesParser::new(names).try_map(|name| aid::named(&name))
 }
 
 /// Writes a drawing as PNG or SVG, by the ending of the file.

@@ -12,7 +12,7 @@ use super::{
     exit_codes::help_end,
     input,
     mapping_marker::check_seen,
-    marker_kinds, output,
+    marking_aids, output,
     progress::{Progress, StopSignal},
     text::vertices,
 };
@@ -44,7 +44,7 @@ pub(super) struct PlayArguments {
     /// The world file [default: a start at random, each of a class and a number of edges equally likely]
     world: Option<PathBuf>,
     /// Marking aid
-    #[arg(long, visible_alias = "aid", default_value = "directional", value_name = "KIND", value_parser = marker_kinds())]
+    #[arg(long, visible_alias = "aid", default_value = "directional", value_name = "KIND", value_parser = marking_aids())]
     marker: AidKind,
     /// Number of edges of a random world, from 1 to 8
     #[arg(
