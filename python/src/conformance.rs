@@ -39,8 +39,7 @@ pub(crate) fn conform<'py>(
     max_darts: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let known =
-        |name| aid::named(name).map_err(|unknown| error(py, "UnknownMarkerError", unknown));
+    let known = |name| aid::named(name).map_err(|unknown| error(py, "UnknownMarkerError", unknown));
     let aid = marker.map(known).transpose()?;
     let doors = match driver {
         "anyone" => DoorChooser::Anyone,
