@@ -8,7 +8,7 @@ use toposlam_logs::{
     topic_map::{MarkerPlace, Role, TopicMap},
 };
 use toposlam_model::{
-    aid::{AidKind, UnknownAid, markers::MOVABLE, pointer::MovablePointer},
+    aid::{AidKind, UnknownAid},
     enumerate::Watch,
     folding::WorldSearch,
     format::named_world::{NamedWorld, StartError},
@@ -99,10 +99,10 @@ pub struct CheckedLog {
 pub enum CheckError {
     #[error(transparent)]
     Aid(#[from] UnknownAid),
-    #[error("logs do not record what a robot with `{}` sees of it", .aid.name())]
+    #[error("logs do not record what a robot sees with `{}`", .aid.name())]
     SightingsNotRecorded { aid: AidKind },
-    #[error("its events are inferred, and only recorded ones show what a robot does with `{}`", .aid.name())]
-    InferredWithMoving { aid: AidKind },
+    #[error("its events are inferred, and only recorded ones show what a robot sees of `{0}`, and does with it", .aid.name())]
+    OnlyRecorded { aid: AidKind },
     #[error("its algorithm `{0}` is unknown")]
     Algorithm(String),
     #[error(transparent)]
@@ -141,12 +141,6 @@ pub enum MarkerPlaceError {
     Assumed(MarkedVisitsError),
 }
 
-/// The marking aids of robots whose logs can be checked: logs record what such robots see.
-pub fn checked_aids() -> impl Iterator<Item = AidKind> {
-    let fixed = [Directional, Undirected, NoMarker].map(AidKind::from);
-    fixed.into_iter().chain([MOVABLE.into(), AidKind::Pointer(MovablePointer)])
-}
-
 impl LogCheck<'_> {
     /// Reads and judges a log. `on_events` is called between the two.
     ///
@@ -161,11 +155,12 @@ impl LogCheck<'_> {
         let LogSource { log, topics, head, sensor } = *source;
         let head = LogHead(head);
         let aid = self.aid.map_or_else(|| head.aid(), Ok)?;
-        if !checked_aids().any(|it| it == aid) && aid.moves() {
+        if !aid.marks() {
             return Err(CheckError::SightingsNotRecorded { aid });
         }
-        if aid.moves() && self.evidence != Evidence::Recorded {
-            return Err(CheckError::InferredWithMoving { aid });
+        let is_inferred = [Directional, Undirected, NoMarker].map(AidKind::from).contains(&aid);
+        if self.evidence != Evidence::Recorded && !is_inferred {
+            return Err(CheckError::OnlyRecorded { aid });
         }
         let (settings, driver) = match self.doors {
             DoorChooser::Algorithm(algorithm) => {

@@ -102,6 +102,9 @@ pub enum SightingError {
     NotRecorded,
     #[error("its percepts do not record along which door the marker points")]
     NoDoor,
+    /// In an event, counted from 1.
+    #[error("in event {event} its robot sees `{sighting}`, which is nothing that a robot with `{0}` sees", .aid.name())]
+    OfAnotherAid { event: usize, sighting: Sighting, aid: AidKind },
     /// An event, counted from 1.
     #[error("after event {event}, it does not record what the robot then perceived where it stood")]
     NotRecordedAfter { event: usize },
@@ -150,6 +153,7 @@ impl CheckedEvent {
 }
 
 impl RunEvents {
+    #[cfg(test)]
     pub(crate) fn arrivals_mut(&mut self) -> impl Iterator<Item = &mut Arrival> {
         self.events.iter_mut().filter_map(CheckedEvent::arrival_mut)
     }
@@ -166,7 +170,8 @@ impl RunEvents {
             return Err(SightingError::NotRecordedAfter { event: event + 1 });
         }
         let is_directional = [Directional.into(), AidKind::Pointer(MovablePointer)].contains(&aid);
-        for arrival in self.arrivals_mut() {
+        for (event, checked) in (1..).zip(&mut self.events) {
+            let Some(arrival) = checked.arrival_mut() else { continue };
             match arrival.sighting {
                 None if is_none => arrival.sighting = Some(Sighting::Nothing),
                 None => return Err(SightingError::NotRecorded),
@@ -174,6 +179,10 @@ impl RunEvents {
                     arrival.sighting = Some(Sighting::Lying(1));
                 }
                 Some(Sighting::Lying(_)) if is_directional => return Err(SightingError::NoDoor),
+                // Without a marker the judgement reports that one is seen.
+                Some(sighting) if !is_none && !aid.shows(sighting) => {
+                    return Err(SightingError::OfAnotherAid { event, sighting, aid });
+                }
                 Some(_) => {}
             }
         }

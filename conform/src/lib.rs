@@ -41,7 +41,6 @@ mod tests;
 
 pub use check::{
     CheckError, CheckedLog, DoorChooser, LogCheck, LogSource, MarkerPlaceError, RobotStart,
-    checked_aids,
 };
 pub use config::{ConformConfig, RunDriver};
 pub use divergence::{Divergence, DivergenceCause, FaultClass};

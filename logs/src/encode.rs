@@ -14,7 +14,7 @@ use toposlam_model::{
     },
     embedded_graph::{Dart, Vertex},
     mapping::{FoldingEvent, MappingEvent, SafeguardEvent},
-    percept::{self, Sighting},
+    percept::{self, Sighting, UnknownSighting},
 };
 
 use super::messages::{Action, Command, Door, End, Hypothesis, Map, Percept, Scene, Stamp};
@@ -127,11 +127,10 @@ pub(super) fn command_of(command: &Command) -> EventKind {
 
 pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
     let Arrival { number: moves, degree, sighting, shape, entry } = arrival;
-    // A marker that points along no door is written along any.
-    let marker = match sighting {
-        Some(Sighting::Pointing(door)) => number(door.0),
-        Some(Sighting::Lying(_)) => 0,
-        _ => NONE,
+    let (marker, words) = match sighting {
+        None | Some(Sighting::Nothing) => (NONE, String::new()),
+        Some(Sighting::Pointing(door)) => (number(door.0), String::new()),
+        Some(other) => (NONE, other.to_string()),
     };
     Percept {
         stamp,
@@ -140,15 +139,20 @@ pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
         marker,
         form: shape.map_or([false; 4], |shape| shape.0),
         entry: entry.unwrap_or(f64::NAN),
+        sighting: words,
     }
 }
 
-/// The arrival in a message; an error if its marker points along a negative door.
+/// The arrival in a message; an error if its marker points along a negative door, or its words are no sighting.
 pub(super) fn arrival_of(message: &Percept) -> Result<Arrival, String> {
+    let sighting = match &*message.sighting {
+        "" => sighting_of(message.marker.into())?,
+        words => sighting_in(words)?,
+    };
     Ok(Arrival {
         number: known(message.r#move),
         degree: message.degree,
-        sighting: Some(sighting_of(message.marker.into())?),
+        sighting: Some(sighting),
         shape: message.form.contains(&true).then_some(JunctionShape(message.form)),
         entry: message.entry.is_finite().then_some(message.entry),
     })
@@ -161,6 +165,11 @@ pub(super) fn sighting_of(marker: i64) -> Result<Sighting, String> {
     }
     let door = u32::try_from(marker).map(|door| Sighting::Pointing(percept::Door(door)));
     door.map_err(|_| format!("its marker is {marker}, which is not a door and not -1, no marker"))
+}
+
+/// The sighting that words describe. An error if they do not.
+pub(super) fn sighting_in(words: &str) -> Result<Sighting, String> {
+    words.parse().map_err(|unknown: UnknownSighting| unknown.to_string())
 }
 
 pub(super) fn seen(is_seen: bool) -> Sighting {
@@ -309,6 +318,27 @@ mod tests {
         }
         let wrong = Action { action: "lift".to_owned(), ..Action::default() };
         assert!(action_of(&wrong).unwrap_err().starts_with("`lift` is not an action"));
+    }
+
+    #[test]
+    fn what_is_seen_of_any_marking_aid_is_read_as_it_was_written() {
+        for words in [
+            "no marker",
+            "marker along door 2",
+            "marker",
+            "2 markers",
+            "first and third marker",
+            "past the mark, against its arrow",
+            "string through doors 0 and 1, from the hand through door 0, fixed end",
+            "robot 2 here along door 1, robot 3 elsewhere at 1 door",
+        ] {
+            let sighting = Some(words.parse().unwrap());
+            let seen = Arrival { number: Some(3), degree: 3, sighting, shape: None, entry: None };
+            let message = arrival(Stamp::default(), &seen);
+            assert_eq!(arrival_of(&message), Ok(seen), "{words}");
+        }
+        let wrong = Percept { sighting: "north".to_owned(), ..Percept::default() };
+        assert!(arrival_of(&wrong).unwrap_err().starts_with("`north` is not what a robot sees"));
     }
 
     #[test]

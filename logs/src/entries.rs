@@ -310,11 +310,14 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
         Role::Percept if carried.own => EventKind::Arrival(encode::arrival_of(&own(value)?)?),
         Role::Percept => {
             let marker = carried.paths.get(&MessagePart::Marker).and_then(|path| value.at(path));
-            let marker = if let Some(Value::Bool(is_seen)) = marker {
-                Some(encode::seen(is_seen))
-            } else {
-                let marker = whole::<i64>(carried, value, MessagePart::Marker)?;
-                marker.map(encode::sighting_of).transpose()?
+            let words = marker.as_ref().and_then(Value::text);
+            let marker = match (marker, words) {
+                (Some(Value::Bool(is_seen)), _) => Some(encode::seen(is_seen)),
+                (_, Some(words)) => Some(encode::sighting_in(&words)?),
+                _ => {
+                    let marker = whole::<i64>(carried, value, MessagePart::Marker)?;
+                    marker.map(encode::sighting_of).transpose()?
+                }
             };
             EventKind::Arrival(Arrival {
                 number: whole(carried, value, MessagePart::Move)?,

@@ -51,6 +51,8 @@ enum LineMarker {
     /// The door along which it points; -1: no marker is there.
     Door(i64),
     Seen(bool),
+    /// In words.
+    Words(Sighting),
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -122,11 +124,15 @@ impl Visitor<'_> for MarkerVisitor {
     type Value = LineMarker;
 
     fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str("the marker: a door, -1, true, false or null")
+        out.write_str("the marker: a door, -1, true, false, words or null")
     }
 
     fn visit_bool<E: Error>(self, is_seen: bool) -> Result<LineMarker, E> {
         Ok(LineMarker::Seen(is_seen))
+    }
+
+    fn visit_str<E: Error>(self, words: &str) -> Result<LineMarker, E> {
+        encode::sighting_in(words).map(LineMarker::Words).map_err(E::custom)
     }
 
     fn visit_i64<E: Error>(self, door: i64) -> Result<LineMarker, E> {
@@ -171,6 +177,7 @@ impl VisitLine {
         let sighting = |marker| match marker {
             LineMarker::Door(door) => encode::sighting_of(door),
             LineMarker::Seen(is_seen) => Ok(encode::seen(is_seen)),
+            LineMarker::Words(sighting) => Ok(sighting),
         };
         self.marker.map(sighting).transpose()
     }
@@ -260,7 +267,8 @@ impl Columns {
                 "marker" => {
                     let seen = bool_cell(&cell).map(LineMarker::Seen);
                     let door = || whole_cell(&cell).map(LineMarker::Door);
-                    event.marker = Some(seen.or_else(door).ok_or_else(wrong)?);
+                    let words = || encode::sighting_in(&cell).map(LineMarker::Words);
+                    event.marker = Some(seen.or_else(door).map_or_else(words, Ok)?);
                 }
                 _ => {
                     let number = || whole_cell(&cell).filter(|number| (0..=1).contains(number));
@@ -411,7 +419,9 @@ mod tests {
 degree,door,stamp | 2,1,9e99 | its stamp is 9e99; seconds are expected
  | {"degree":2,"marker":-9} | its marker is -9, which is not a door and not -1, no marker
  | {"degree":2,"marker":99999999999} | its marker is 99999999999, which is not a door and not -1, no marker
- | {"degree":2,"marker":"north"} | invalid type: string "north", expected the marker: a door, -1, true, false or null
+ | {"degree":2,"marker":[]} | invalid type: sequence, expected the marker: a door, -1, true, false, words or null
+ | {"degree":2,"marker":"north"} | `north` is not what a robot sees of a marking aid; that is written as in `marker along door 1`, `2 markers`, `first marker`, `string through door 0, fixed end` or `robot 2 here along door 1`
+degree,door,marker | 2,1,north | `north` is not what a robot sees of a marking aid; that is written as in `marker along door 1`, `2 markers`, `first marker`, `string through door 0, fixed end` or `robot 2 here along door 1`
 degree,door,actions | 2,1,lift | `lift` is not an action; write a door number, pick-up, drop, pick-up-2, drop-2 or send-2:1
  | {"degree":2,"actions":"drop 2"} | `2` is not an action; write a door number, pick-up, drop, pick-up-2, drop-2 or send-2:1
 degree,door | 2 | it has 1 cells, and the header 2

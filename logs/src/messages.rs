@@ -97,6 +97,7 @@ own! {
         marker: i32,
         form: [bool; 4],
         entry: f64,
+        sighting: String = String::new(),
     }
     Hypothesis "/toposlam/hypothesis" {
         r#move: u32,

@@ -164,7 +164,15 @@ mod tests {
         let stamp = Stamp { sec: 1, nanosec: 2 };
         let command = Command { stamp, state: "go".to_owned(), turn: 1.0, forward: -0.5 };
         let form = [true, false, true, false];
-        let percept = Percept { stamp, r#move: 3, degree: 2, marker: -1, form, entry: 1.0 };
+        let percept = Percept {
+            stamp,
+            r#move: 3,
+            degree: 2,
+            marker: -1,
+            form,
+            entry: 1.0,
+            ..Percept::default()
+        };
         let file = written(|log| {
             log.write(Command::TOPIC, 5, &command).unwrap();
             log.write(Percept::TOPIC, 6, &percept).unwrap();
@@ -174,7 +182,8 @@ mod tests {
         let word = [3, 0, 0, 0, b'g', b'o', 0, 0];
         let padded = [&head[..], &word, &one, &minus_half].concat();
         let aligned = [&head[..], &[3, 0, 0, 0, 2, 0, 0, 0, 255, 255, 255, 255, 1, 0, 1, 0]];
-        assert_eq!(bodies(&file), [padded, [aligned.concat(), one.to_vec()].concat()]);
+        let empty = vec![1, 0, 0, 0, 0];
+        assert_eq!(bodies(&file), [padded, [aligned.concat(), one.to_vec(), empty].concat()]);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! and the way back. Section 2.1, "Robot motion and perception".
 
 mod ball;
+mod words;
 
 use std::{cmp::Ordering, fmt};
 
@@ -14,6 +15,7 @@ use crate::{
 };
 
 pub use ball::{Ball, BehindDoors};
+pub use words::UnknownSighting;
 
 /// A way out of a vertex: the `i`-th dart clockwise from the one by which the robot came in. Door 0
 /// is the way back.
@@ -127,12 +129,14 @@ impl MarkerSet {
     }
 }
 
+/// The names of markers that look different.
+const MARKER_NAMES: [&str; 8] =
+    ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
+
 impl MarkerSet {
     /// The names of its markers: `first`, `second` and so on.
     pub fn names(self) -> Vec<&'static str> {
-        const NAMES: [&str; 8] =
-            ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
-        self.numbers().map(|at| NAMES[at]).collect()
+        self.numbers().map(|at| MARKER_NAMES[at]).collect()
     }
 }
 

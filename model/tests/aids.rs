@@ -263,3 +263,44 @@ fn the_smallest_pairs_of_aids_that_move() {
         assert_eq!(smallest(Class::Simple, 5, aid), None, "{}", aid.name());
     }
 }
+
+#[test]
+fn what_a_robot_sees_is_of_its_aid_and_is_read_as_it_is_written() {
+    for aid in AIDS {
+        for graph in [EmbeddedGraph::cycle(3), junction(), dipole()] {
+            let mut worlds = vec![GraphWorld::with_aid(&graph, aid, Dart(0))];
+            for _ in 0..3 {
+                for world in &worlds {
+                    let seen = world.sensed().sighting;
+                    assert!(aid.shows(seen), "{}: {seen}", aid.name());
+                    assert!(!aid.marks() || seen.to_string().parse() == Ok(seen), "{seen}");
+                }
+                worlds = worlds.iter().flat_map(after_each_action).collect();
+            }
+        }
+    }
+    for (aid, sighting) in [
+        ("directional", "marker"),
+        ("undirected", "marker along door 0"),
+        ("movable-2", "first marker"),
+        ("movable-2-distinct", "2 markers"),
+        ("undirected-edge", "past the mark, along its arrow"),
+        ("string-1", "robot 2 here"),
+        ("team-2", "fixed end"),
+    ] {
+        assert!(!named(aid).unwrap().shows(sighting.parse().unwrap()), "{aid}: {sighting}");
+    }
+}
+
+fn after_each_action<'g>(world: &AidWorld<'g>) -> Vec<AidWorld<'g>> {
+    let acted = |action| {
+        let mut world = world.clone();
+        world.act(action).map(|_| world).unwrap()
+    };
+    world.actions().into_iter().map(acted).collect()
+}
+
+/// Two edges between two vertices.
+fn dipole() -> EmbeddedGraph {
+    EmbeddedGraph::from_neighbour_lists(&[("a", vec!["b", "b"]), ("b", vec!["a", "a"])]).unwrap()
+}

@@ -19,10 +19,10 @@ use clap::{
 };
 use toposlam_conform::{
     ConformReports, ConformVerdict, DoorChooser, Evidence, LogReport, Quirks, RequiredCoverage,
-    RobotStart, UnreadLog, case_names, checked_aids, words,
+    RobotStart, UnreadLog, case_names, words,
 };
 use toposlam_model::{
-    aid::{self, AidKind},
+    aid::AidKind,
     enumerate::Class,
     folding::WorldSearch,
     format::named_world::NamedWorld,
@@ -38,6 +38,7 @@ use super::{
     input,
     json::{print_line, print_unread},
     laser_options::WorldLaserOptions,
+    marking_aids,
     method_options::algorithms,
     open_log::LogOptions,
     outcome::SeveralInputs,
@@ -98,9 +99,9 @@ pub(super) struct ConformArguments {
     /// [default: from the log, or else from the world file, or else any]
     #[arg(long, value_name = "VERTEX:FACING", requires = "world")]
     start: Option<String>,
-    /// The robot's marking aid; those that move are checked with recorded events [default: from the log, or else
-    /// directional]
-    #[arg(long, visible_alias = "marker", value_name = "KIND", value_parser = robot_aid())]
+    /// The robot's marking aid; others than directional, undirected and none are checked with recorded events [default:
+    /// from the log, or else directional]
+    #[arg(long, visible_alias = "marker", value_name = "KIND", value_parser = marking_aids())]
     aid: Option<AidKind>,
     /// For events inferred from laser scans: check the log as if a marker had lain at the place that --topics
     /// gives, or else at the first junction that the robot visited, along its entry door
@@ -184,12 +185,6 @@ fn evidence() -> impl TypedValueParser<Value = Evidence> {
         "laser" => Evidence::Laser,
         _ => Evidence::Recorded,
     })
-}
-
-/// Parses the name of the marking aid of a robot whose log is checked.
-fn robot_aid() -> impl TypedValueParser<Value = AidKind> {
-    let kinds = checked_aids().map(|kind| PossibleValue::new(kind.name()).help(kind.about()));
-    PossibleValuesParser::new(kinds).try_map(|name| aid::named(&name))
 }
 
 /// A largest number of edges.

@@ -221,6 +221,25 @@ fn a_robot_with_a_fixed_marker_does_nothing_with_it() {
     assert!(matches!(judgement(&events, &other), Err(JudgeError::Algorithm { .. })));
 }
 
+/// Nobody is accused because a log is checked for another aid than that of its robot.
+#[test]
+fn what_is_seen_of_another_aid_is_an_error() {
+    let graph = bow_tie();
+    for (recorded_aid, checked_aid, seen) in [
+        ("team-2", "movable", "robot 2 here along door 0"),
+        ("movable-2-distinct", "movable-2", "first and second marker"),
+        ("string-1", "team-2", "fixed end"),
+    ] {
+        let algorithm = moving().find(|it| it.aid().name() == recorded_aid).unwrap();
+        let events = recorded(algorithm, &graph, Dart(0));
+        let aid = aid::named(checked_aid).unwrap();
+        let config = ConformConfig { aid, ..by_anyone() };
+        let error = judgement(&events, &config).unwrap_err().to_string();
+        let expected = format!("in event 1 its robot sees `{seen}");
+        assert!(error.starts_with(&expected), "{error}");
+    }
+}
+
 #[test]
 fn a_log_with_actions_is_shortened_with_them() {
     let graph = bow_tie();

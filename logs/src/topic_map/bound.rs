@@ -142,11 +142,11 @@ fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), Stri
 fn leads(definition: &Definition, path: &str, part: MessagePart) -> bool {
     let found = definition.at(path);
     if part != MessagePart::Quaternion {
-        // A marker that points nowhere is seen or not.
-        let may_be_bool = part == MessagePart::Marker;
+        // A marker that points nowhere is seen or not; of other marking aids, what is seen is in words.
+        let is_marker = part == MessagePart::Marker;
         let number = |kind| match kind {
             FieldType::Int(_) | FieldType::Unsigned(_) | FieldType::Float(_) => true,
-            kind => kind == FieldType::Bool && may_be_bool,
+            kind => is_marker && [FieldType::Bool, FieldType::Text].contains(&kind),
         };
         return found.is_some_and(|(kind, count)| number(kind) && count == Count::One);
     }

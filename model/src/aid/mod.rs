@@ -344,6 +344,33 @@ impl AidKind {
         !matches!(self, Self::Binoculars(_))
     }
 
+    /// Whether a robot with it sees such things of it. Everybody may see nothing.
+    pub fn shows(self, sighting: Sighting) -> bool {
+        use MarkerKind::{
+            DirectedEdge, Directional, TwoDistinct, TwoIdentical, Undirected, UndirectedEdge,
+        };
+        match sighting {
+            Sighting::Nothing => true,
+            Sighting::Pointing(_) => matches!(self, Self::Fixed(Directional) | Self::Pointer(_)),
+            Sighting::Lying(_) => match self {
+                Self::Fixed(marker) => [Undirected, TwoIdentical].contains(&marker),
+                Self::Markers(markers) => markers.are_alike(),
+                _ => false,
+            },
+            Sighting::These(_) => match self {
+                Self::Fixed(marker) => marker == TwoDistinct,
+                Self::Markers(markers) => !markers.are_alike(),
+                _ => false,
+            },
+            Sighting::Passed => self == Self::Fixed(UndirectedEdge),
+            Sighting::PassedAlong | Sighting::PassedAgainst => self == Self::Fixed(DirectedEdge),
+            Sighting::String(_) => matches!(self, Self::String(_)),
+            Sighting::Team(_) => matches!(self, Self::Team(_)),
+            Sighting::Ball(_) => matches!(self, Self::Binoculars(_)),
+            Sighting::Compass(_) => false,
+        }
+    }
+
     /// The fixed marker that it is.
     pub fn fixed(self) -> Option<MarkerKind> {
         if let Self::Fixed(marker) = self { Some(marker) } else { None }

@@ -51,15 +51,16 @@ fn string(text: &str) -> Option<Sighting> {
         match part {
             "fixed end" => view.fixed_end = true,
             "free end" => view.free_end = true,
-            _ => match part.strip_prefix("from the hand through ") {
-                Some(door) => view.hand = Some(door_of(door)?),
-                None => {
-                    let number = part.strip_prefix("string through ").unwrap_or(part);
-                    let number = number.strip_prefix("doors ").unwrap_or(number);
-                    let door = number.parse().ok().map(Door).or_else(|| door_of(number));
-                    view.doors.insert(door?);
+            _ => {
+                if let Some(door) = part.strip_prefix("from the hand through ") {
+                    view.hand = Some(door_of(door)?);
+                    continue;
                 }
-            },
+                let number = part.strip_prefix("string through ").unwrap_or(part);
+                let number = number.strip_prefix("doors ").unwrap_or(number);
+                let door = number.parse().ok().map(Door).or_else(|| door_of(number));
+                view.doors.insert(door?);
+            }
         }
     }
     Some(Sighting::String(view))
@@ -121,17 +122,17 @@ mod tests {
     }
 
     fn sighting() -> impl Strategy<Value = Sighting> {
-        let string = (
-            prop::collection::vec(door(), 0..5),
-            any::<[bool; 2]>(),
-            prop::option::of(door()),
-        )
-            .prop_filter_map("of a string something is seen", |(list, [fixed_end, free_end], hand)| {
-                let mut doors = DoorSet::default();
-                list.iter().for_each(|door| doors.insert(*door));
-                let view = StringView { doors, fixed_end, free_end, hand };
-                (view != StringView::default()).then_some(Sighting::String(view))
-            });
+        let string =
+            (prop::collection::vec(door(), 0..5), any::<[bool; 2]>(), prop::option::of(door()))
+                .prop_filter_map(
+                    "of a string something is seen",
+                    |(list, [fixed_end, free_end], hand)| {
+                        let mut doors = DoorSet::default();
+                        list.iter().for_each(|door| doors.insert(*door));
+                        let view = StringView { doors, fixed_end, free_end, hand };
+                        (view != StringView::default()).then_some(Sighting::String(view))
+                    },
+                );
         prop_oneof![
             Just(Sighting::Nothing),
             Just(Sighting::Passed),

@@ -115,6 +115,9 @@ fn not_checked(path: &Path, opened: &OpenLog, error: CheckError) -> CliError {
         error @ CheckError::Judge(JudgeError::Marker(SightingError::NoDoor)) => {
             CliError::in_file(path, format!("{error}{WITHOUT_DOOR}"))
         }
+        error @ CheckError::Judge(JudgeError::Marker(
+            SightingError::OfAnotherAid { .. } | SightingError::NotRecordedAfter { .. },
+        )) => CliError::in_file(path, error),
         error @ (CheckError::MarkerNotShown(_)
         | CheckError::Judge(JudgeError::Marker(_) | JudgeError::Algorithm { .. })) => {
             CliError::in_file(path, format!("{error}{WITHOUT_MARKER}"))
