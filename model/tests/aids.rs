@@ -302,5 +302,5 @@ fn after_each_action<'g>(world: &AidWorld<'g>) -> Vec<AidWorld<'g>> {
 
 /// Two edges between two vertices.
 fn dipole() -> EmbeddedGraph {
-    EmbeddedGraph::from_neighbour_lists(&[("a", vec!["b", "b"]), ("b", vec!["a", "a"])]).unwrap()
+    EmbeddedGraph::from_edge_lists(&[("a", vec!["e", "f"]), ("b", vec!["e", "f"])]).unwrap()
 }
