@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use toposlam_model::{
+    aid::AidKind,
     driving::{
         algorithm2::{Command, PathState},
         pose::Pose,
@@ -21,8 +22,9 @@ use toposlam_model::{
 pub struct RunPageData {
     pub world: NamedWorld,
     pub plan: Arc<FloorPlan>,
-    /// The dart along which the marker lies. At the start the robot has its back to its hallway.
+    /// The dart along which the marker lies at first. At the start the robot has its back to its hallway.
     pub facing: Dart,
+    pub aid: AidKind,
     pub rounds: Vec<PageFrame>,
     /// The junctions that the robot came to, in order; the start first.
     pub calls: Vec<PageArrival>,
@@ -65,6 +67,8 @@ pub struct PageFrame {
     pub image: Option<Vec<u8>>,
     /// The number of steps of the mapping algorithm before it.
     pub steps: usize,
+    /// If the marking aid moves: at which dart the marker lies, or the other robot stands; `None` if the robot carries it.
+    pub aid: Option<Dart>,
 }
 
 /// What the robot perceived at a junction.

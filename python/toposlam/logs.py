@@ -208,8 +208,8 @@ def conform(
     """Checks a log against the specification, in a known world or with the smallest that explains it.
 
     `driver` is what chose the doors: `"algorithm"` as the log records it, or else `"algorithm1"` or
-    `"folding"`, or `"anyone"`. `marker` is the robot's marking aid, also `"movable"` or
-    `"movable-directional"`, by default that of the log; `assume_marker` adds one at the first junction of a
+    `"folding"`, or `"anyone"`. `marker` is the name of the robot's marking aid, by
+    default that of the log; `assume_marker` adds one at the first junction of a
     laser log. With `corners`, the bends of corridors are vertices in a laser log; otherwise they are none in
     the world either.
 

@@ -5,6 +5,7 @@ mod error;
 mod mapping_run;
 mod obstacle;
 mod relocation;
+mod team;
 
 use toposlam_logs::record::{Arrival, EventKind, Frame, FrameSensor, RunObserver};
 use toposlam_model::{
@@ -61,6 +62,8 @@ pub struct RobotExplorer<R, S, O = ()> {
     /// Whether it returns at an obstacle that it cannot pass, as from a dead end, and does not give up.
     returns_at_obstacles: bool,
     sought: SoughtMarker,
+    /// Whether another robot belongs to it, which it sends through doors.
+    has_team: bool,
     /// Where an obstacle stopped it, since it last stood at a junction.
     stall: Option<Stall>,
     /// Whether the robot may stand anywhere at its start, and not only at an L.
@@ -83,6 +86,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             place: None,
             returns_at_obstacles: false,
             sought: SoughtMarker::Pointing,
+            has_team: false,
             stall: None,
             begins_anywhere: false,
             allowance: Allowance::default(),
@@ -128,10 +132,13 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
         self.returns_at_obstacles |= settings.method.recovers();
         self.begins_anywhere = !settings.earlier.is_empty();
-        self.sought = match settings.method.algorithm().aid() {
+        let aid = settings.method.algorithm().aid();
+        self.sought = match aid {
             AidKind::Markers(_) => SoughtMarker::Lying,
+            AidKind::Team(_) => SoughtMarker::Nothing,
             _ => SoughtMarker::Pointing,
         };
+        self.has_team = matches!(aid, AidKind::Team(_));
         self.map_building(settings)
     }
 
@@ -260,6 +267,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         if !self.begins_anywhere && !state.shape.is_l() {
             return Err(ExplorerError::NotAnL { degree: state.shape.degree() });
         }
+        let state = self.with_team(state)?;
         self.arrive(state, Arrival::new(self.last_move, &state));
         Ok(state)
     }
@@ -334,6 +342,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
         match driven {
             Ok(state) => {
                 self.moves += 1;
+                let state = self.with_team(state)?;
                 self.arrive(state, Arrival::new(self.last_move, &state));
             }
             Err(error) if self.returns_at_obstacles && error.is_stalled() => {
@@ -356,18 +365,19 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> AidHandler for RobotExplorer<R, S
     type Error = ExplorerError;
 
     /// Picks the marker up or drops it, where the robot stands. Its body hides the floor there; but the gripper feels whether
-    /// it holds the marker, so the robot then knows whether one lies here.
+    /// it holds the marker, so the robot then knows whether one lies here. Or sends the other robot, and looks whether it is here.
     fn handle(&mut self, action: AidAction) -> Result<(), ExplorerError> {
         let state = self.junction_state()?;
         self.robot.handle(action).map_err(|error| self.robot_error(error))?;
+        let number = u32::try_from(self.last_move).ok();
+        self.emit(EventKind::Action { number, action });
         let sighting = match action {
+            AidAction::Send { .. } => return self.see_sent(state),
             AidAction::Drop => Sighting::Lying(1),
             _ => Sighting::Nothing,
         };
         let percept = Percept { sighting, ..state.percept };
         self.place = Some(Standpoint::Junction(JunctionState { percept, ..state }));
-        let number = u32::try_from(self.last_move).ok();
-        self.emit(EventKind::Action { number, action });
         Ok(())
     }
 }

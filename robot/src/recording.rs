@@ -1,9 +1,13 @@
 //! The frames of a run, and a robot that plays frames back: the off-line version. Section 6.
 
-use std::iter::Cloned;
+use std::{collections::VecDeque, iter::Cloned};
 
-use toposlam_logs::record::{Event, EventKind, Frame, RunObserver};
-use toposlam_model::{aid::AidAction, driving::algorithm2::Command};
+use toposlam_logs::record::{Arrival, Event, EventKind, Frame, RunObserver};
+use toposlam_model::{
+    aid::AidAction,
+    driving::algorithm2::Command,
+    percept::{OtherRobot, Sighting},
+};
 
 use crate::robot::{Robot, RobotError, TimedOdometry};
 
@@ -12,11 +16,14 @@ use crate::robot::{Robot, RobotError, TimedOdometry};
 pub struct Recording {
     pub frames: Vec<Frame>,
     pub commands: Vec<Command>,
+    /// The numbers of doors that the other robot of the team reported, wherever it was not seen.
+    pub reports: Vec<u32>,
 }
 
 impl Recording {
     pub fn robot(&self) -> RecordedRobot<Cloned<std::slice::Iter<'_, Frame>>> {
-        RecordedRobot::new(self.frames.iter().cloned())
+        let reports = self.reports.iter().copied().collect();
+        RecordedRobot { reports, ..RecordedRobot::new(self.frames.iter().cloned()) }
     }
 }
 
@@ -28,6 +35,13 @@ impl RunObserver for Recording {
             EventKind::LookAround { turn } => {
                 self.commands.push(Command { turn: *turn, forward: 0.0 });
             }
+            EventKind::Arrival(Arrival { sighting: Some(Sighting::Team(team)), .. }) => {
+                let reported = team.0.iter().filter_map(|other| match other {
+                    OtherRobot::Elsewhere { degree } => Some(*degree),
+                    _ => None,
+                });
+                self.reports.extend(reported);
+            }
             _ => {}
         }
     }
@@ -38,11 +52,12 @@ impl RunObserver for Recording {
 pub struct RecordedRobot<F> {
     pub(crate) next: Option<Frame>,
     pub(crate) frames: F,
+    pub(crate) reports: VecDeque<u32>,
 }
 
 impl<F: Iterator<Item = Frame>> RecordedRobot<F> {
     pub(crate) fn new(mut frames: F) -> Self {
-        Self { next: frames.next(), frames }
+        Self { next: frames.next(), frames, reports: VecDeque::new() }
     }
 }
 
@@ -63,6 +78,10 @@ impl<F: Iterator<Item = Frame>> Robot for RecordedRobot<F> {
 
     fn handle(&mut self, _: AidAction) -> Result<(), RobotError> {
         Ok(())
+    }
+
+    fn reported_degree(&mut self) -> Option<u32> {
+        self.reports.pop_front()
     }
 
     /// Where the robot was when the next frame was taken.

@@ -5,6 +5,7 @@ use toposlam_logs::record::Frame;
 use toposlam_model::{
     aid::AidAction,
     driving::{odometry::Odometry, pose::Pose},
+    percept::Door,
 };
 use toposlam_vision::laser::scan::ScanError;
 
@@ -26,6 +27,11 @@ pub trait Robot {
     /// error if the action did not succeed.
     fn handle(&mut self, action: AidAction) -> Result<(), RobotError> {
         Err(RobotError::CannotHandle { action })
+    }
+
+    /// The number of doors where the other robot of its team stands, as that one reports; `None` if it reports nothing.
+    fn reported_degree(&mut self) -> Option<u32> {
+        None
     }
 
     /// Where the robot is by its wheels, and when.
@@ -70,6 +76,10 @@ pub enum RobotError {
     NothingGripped,
     #[error("the robot stands at no junction, and keeps its marker")]
     NotAtJunction,
+    #[error("robot {robot} could not go through its door {}: {cause}", door.0)]
+    NotSent { robot: u8, door: Door, cause: String },
+    #[error("the other robot is not seen, and does not report where it is")]
+    NoReport,
     #[error("the gripper is {}", if *.holds { "full" } else { "empty" })]
     Gripper { holds: bool },
     #[error("the log has no more images")]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Point2;
 use toposlam_model::{
-    driving::pose::Pose,
+    driving::{WAITING, pose::Pose},
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind},
 };
@@ -32,6 +32,8 @@ pub struct SimulationConfig {
     /// Whether wheel speeds are recorded for [`Robot::track`](toposlam_robot::robot::Robot::track).
     pub keeps_track: bool,
     pub seed: u64,
+    /// The number of the robot in its team, from 0.
+    pub robot: usize,
 }
 
 impl SimulationConfig {
@@ -48,7 +50,24 @@ impl SimulationConfig {
             faults: Vec::new(),
             keeps_track: false,
             seed,
+            robot: 0,
         }
+    }
+
+    /// A team of two at this start. The other robot waits where another one sees along which dart it stands.
+    #[must_use]
+    pub fn with_team(self) -> Self {
+        Self { marker_off: WAITING, ..self }
+    }
+
+    /// The other robot of its team. It waits at the start, with its back to the junction.
+    #[must_use]
+    pub fn other(&self) -> Self {
+        let position = self.lying_marker().centre_in_plan.into();
+        let heading = angle(self.plan.direction(self.marker));
+        let pose = Pose { position, heading };
+        let (faults, keeps_track) = (Vec::new(), false);
+        Self { pose, faults, keeps_track, robot: 1, ..self.clone() }
     }
 
     /// A robot in a network of corridors: within a dart's corridor, on its way to the dart's junction. The marker lies in that

@@ -32,6 +32,7 @@ pub mod render;
 pub mod run;
 pub mod sample_verdict;
 mod scanner;
+mod sent_robot;
 mod simulated_robot;
 mod surroundings;
 pub mod truth;

@@ -73,9 +73,14 @@ pub struct SimulatedBase {
 }
 
 impl SimulatedBase {
-    /// A base at a pose in a building. The same seed gives the same base.
-    pub fn new(plan: &FloorPlan, pose: Pose, noise: &MotionNoise, seed: u64) -> Self {
-        let mut chance = stream(seed, StreamPurpose::Wheels, 0);
+    /// The base of the robot with this number in its team, at a pose in a building. The same seed gives the same base.
+    pub fn new(
+        plan: &FloorPlan,
+        pose: Pose,
+        noise: &MotionNoise,
+        (seed, robot): (u64, usize),
+    ) -> Self {
+        let mut chance = stream(seed, StreamPurpose::Wheels, robot);
         let mut share = |deviation: f64| deviation * standard(&mut chance);
         let bias = share(noise.bias) / 2.0;
         let odometry = [share(noise.odometry), share(noise.odometry)];
@@ -236,7 +241,7 @@ mod tests {
     fn base(noise: &MotionNoise, seed: u64) -> SimulatedBase {
         let junctions = [("a".to_owned(), [0.0, 0.0]), ("b".to_owned(), [6.0, 0.0])];
         let plan = FloorPlan::new(2.0, &junctions, &[("a".to_owned(), "b".to_owned())]).unwrap();
-        SimulatedBase::new(&plan, Pose { position: [0.0; 2], heading: 0.0 }, noise, seed)
+        SimulatedBase::new(&plan, Pose { position: [0.0; 2], heading: 0.0 }, noise, (seed, 0))
     }
 
     // paper: hardware.drive

@@ -209,7 +209,7 @@ pub fn offline(
 mod tests {
     use toposlam_logs::record::{NoSensor, RobotSensor};
     use toposlam_model::{
-        aid::{AidAction, markers::MOVABLE},
+        aid::{AidAction, markers::MOVABLE, team::PAIR},
         mapping::RecoveryConfig,
         percept::Door,
     };
@@ -276,6 +276,30 @@ mod tests {
         let settings = RunSettings::new(movable, DARTS);
         let sensor = RobotSensor::Laser(Box::default());
         let robot = config.by_laser(&ScannerParams::default());
+        let run = run(&config.plan, config.marker, robot, sensor, (), &settings);
+        assert_eq!(run.outcome(), RunOutcome::Right, "by laser");
+    }
+
+    /// Each robot drives by itself; the moves are those of both.
+    #[test]
+    fn a_plan_is_mapped_by_a_robot_that_sends_another_one() {
+        let team = MappingAlgorithm::Team(PAIR);
+        for (name, starts) in [("shape-8", 3), ("building-12", 1)] {
+            for start in 0..starts {
+                let config = with_movable_marker(name, start, 7 + start as u64).with_team();
+                let robot = config.by_scene().with_other(config.other().by_scene(), None);
+                let settings = RunSettings::new(team, DARTS);
+                let run = run(&config.plan, config.marker, robot, NoSensor, (), &settings);
+                assert_eq!(run.outcome(), RunOutcome::Right, "{name} from start {start}");
+                assert!(run.isomorphic() && run.pose_true());
+            }
+        }
+        let config = with_movable_marker("shape-8", 0, 3).with_team();
+        let params = ScannerParams::default();
+        let sensor = RobotSensor::Laser(Box::default());
+        let other = config.other().by_laser(&params);
+        let robot = config.by_laser(&params).with_other(other, Some(sensor.clone()));
+        let settings = RunSettings::new(team, DARTS);
         let run = run(&config.plan, config.marker, robot, sensor, (), &settings);
         assert_eq!(run.outcome(), RunOutcome::Right, "by laser");
     }

@@ -22,6 +22,7 @@ use super::{
     learned_sensors::LearnedSensors,
     motion::{MotionNoise, SimulatedBase},
     scanner::{CorridorPlan, LaserScanner, ScannerParams},
+    sent_robot::SentRobot,
 };
 use crate::{
     render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream},
@@ -37,6 +38,8 @@ pub struct SimulatedRobot {
     scanner: Option<LaserScanner>,
     /// `None` if the robot carries it.
     marker: Option<LyingMarker>,
+    /// Its team.
+    other: Option<Box<SentRobot>>,
     faults: Vec<RobotFault>,
     seed: u64,
     frames: u64,
@@ -63,7 +66,8 @@ impl SimulationConfig {
         look: &BuildingLook,
         effects: &Effects,
     ) -> SimulatedRobot {
-        let building = Building::new(&self.plan, look, Some(self.marker), effects, self.seed);
+        let mut building = Building::new(&self.plan, look, None, effects, self.seed);
+        building.place_marker(Some(self.lying_marker()));
         let camera = RenderingCamera::new(rig.clone(), building, effects.clone(), self.seed);
         SimulatedRobot::new(self, SimulatedCamera::Images(Box::new(camera)))
     }
@@ -89,7 +93,7 @@ impl SimulationConfig {
         SceneCamera { plan: plan.clone(), marker: Some(self.lying_marker()), noise, seed }
     }
 
-    fn lying_marker(&self) -> LyingMarker {
+    pub(crate) fn lying_marker(&self) -> LyingMarker {
         LyingMarker::along(&self.plan, self.marker).moved(self.marker_off)
     }
 }
@@ -138,13 +142,23 @@ impl SimulatedRobot {
     fn new(config: &SimulationConfig, camera: SimulatedCamera) -> Self {
         let SimulationConfig { plan, pose, faults, seed, .. } = config.clone();
         let noise = MotionNoise::DEFAULT.times(config.noise);
-        let mut base = SimulatedBase::new(&plan, pose, &noise, seed);
+        let mut base = SimulatedBase::new(&plan, pose, &noise, (seed, config.robot));
         if config.keeps_track {
             base.keep_track();
         }
-        let (scanner, last, obstacle) = (None, None, None);
+        let (scanner, last, obstacle, other) = (None, None, None, None);
         let marker = Some(config.lying_marker());
-        Self { plan, base, camera, scanner, marker, faults, seed, frames: 0, last, obstacle }
+        Self { plan, base, camera, scanner, marker, other, faults, seed, frames: 0, last, obstacle }
+    }
+
+    /// The same robot with another one in its team, instead of a marker: the first one sees that one's plate, and that one sees
+    /// none.
+    #[must_use]
+    pub fn with_other(mut self, mut other: Self, sensor: Option<RobotSensor>) -> Self {
+        other.marker = None;
+        other.camera.place_marker(None);
+        self.other = Some(Box::new(SentRobot::waiting(self.plan.clone(), other, sensor)));
+        self
     }
 
     #[must_use]
@@ -228,6 +242,23 @@ impl Robot for SimulatedRobot {
 
     /// The gripper reaches everything in the junction where the robot stands.
     fn handle(&mut self, action: AidAction) -> Result<(), RobotError> {
+        if let (AidAction::Send { robot: robot @ 2, door }, Some(other)) = (action, &mut self.other)
+        {
+            let begun = other.time();
+            let went = other.go(door);
+            self.base.wait(other.time() - begun);
+            let plate = went.map_err(|error| RobotError::NotSent {
+                robot,
+                door,
+                cause: error.to_string(),
+            })?;
+            self.marker = Some(plate);
+            self.camera.place_marker(self.marker);
+            return Ok(());
+        }
+        if self.other.is_some() {
+            return Err(RobotError::CannotHandle { action });
+        }
         let pose = self.base.pose();
         self.base.wait(GRIP_TIME);
         self.marker = match (action, self.marker) {
@@ -247,6 +278,10 @@ impl Robot for SimulatedRobot {
         };
         self.camera.place_marker(self.marker);
         Ok(())
+    }
+
+    fn reported_degree(&mut self) -> Option<u32> {
+        self.other.as_ref()?.degree()
     }
 
     fn odometry(&self) -> TimedOdometry {

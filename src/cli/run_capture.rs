@@ -8,6 +8,7 @@ use std::{
 use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
 use toposlam_logs::record::{Event, EventKind, Frame, RunObserver};
 use toposlam_model::{
+    aid::{Action, AidKind},
     driving::{
         algorithm2::{Command, PathState},
         pose::Pose,
@@ -18,6 +19,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{MapWalk, MappingEvent},
     percept::Door,
+    world::GraphWorld,
 };
 use toposlam_simulator::run::Run;
 use toposlam_vision::{annotate, camera::Camera};
@@ -41,6 +43,8 @@ pub(super) struct RunCapture<'o> {
     door: Option<Door>,
     steps: Vec<MappingStep>,
     moves: u64,
+    /// What the robot did, each with the number of frames before it.
+    actions: Vec<(usize, Action)>,
 }
 
 /// The width of kept images, in pixels.
@@ -70,6 +74,7 @@ impl<'o> RunCapture<'o> {
             door: None,
             steps: Vec::new(),
             moves: 0,
+            actions: Vec::new(),
         })
     }
 
@@ -97,14 +102,32 @@ impl<'o> RunCapture<'o> {
             percept: arrival.perceived,
             conforms: arrival.conforms(),
         });
+        let aid = run.method.algorithm().aid();
+        self.place_aid(GraphWorld::with_aid(plan.graph(), aid, facing));
         RunPageData {
             world: world.clone(),
             plan: plan.clone(),
             facing,
+            aid,
             calls: calls.collect(),
             rounds: std::mem::take(&mut self.rounds),
             steps: std::mem::take(&mut self.steps),
             ending: String::new(),
+        }
+    }
+
+    /// Where the marking aid was at each frame, if it moves.
+    fn place_aid(&mut self, mut world: GraphWorld<AidKind>) {
+        if !world.aid().moves() {
+            return;
+        }
+        let mut actions = std::mem::take(&mut self.actions).into_iter().peekable();
+        for (number, round) in self.rounds.iter_mut().enumerate() {
+            while let Some((_, action)) = actions.next_if(|(frames, _)| *frames <= number) {
+                // What is not possible is reported as a divergence.
+                let _ = world.act(action);
+            }
+            round.aid = world.state().placed.first().copied().flatten();
         }
     }
 
@@ -118,8 +141,14 @@ impl<'o> RunCapture<'o> {
             command: None,
             image: self.annotated(frame),
             steps: self.steps.len(),
+            aid: None,
         };
         self.rounds.push(round);
+    }
+
+    fn act(&mut self, action: Action) {
+        self.moves += action.moves();
+        self.actions.push((self.rounds.len(), action));
     }
 
     /// A small annotated image as a JPEG file.
@@ -154,9 +183,10 @@ impl RunObserver for RunCapture<'_> {
                 }
             }
             EventKind::Door { door, .. } => {
-                self.moves += 1;
+                self.act(Action::Take(*door));
                 self.door = Some(*door);
             }
+            EventKind::Action { action, .. } => self.act(Action::Do(*action)),
             EventKind::Arrival(_) => self.arrivals.push((self.rounds.len(), self.door)),
             _ => {}
         }

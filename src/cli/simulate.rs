@@ -10,7 +10,7 @@ use toposlam_logs::{
     world_hash,
 };
 use toposlam_model::{
-    aid::{self, AidKind, markers::MOVABLE},
+    aid::{self, AidKind, markers::MOVABLE, team::PAIR},
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     format::named_world::NamedWorld,
@@ -70,7 +70,8 @@ pub(super) struct SimulateArguments {
     /// The floor plan
     #[arg(id = "PLAN")]
     plan: PathBuf,
-    /// The robot's marking aid: directional, or movable, which it picks up, carries and drops with its gripper
+    /// The robot's marking aid: directional; movable, which it picks up, carries and drops with its gripper; or team-2, another
+    /// robot, which it sends
     #[arg(long, visible_alias = "marker", default_value = "directional", value_name = "KIND", value_parser = robot_aids(), hide_possible_values = true)]
     aid: AidKind,
     /// Where the robot starts, and the door behind it [default: the plan's own start, or the nearest L]
@@ -177,6 +178,9 @@ struct Simulation {
     frame_kind: &'static str,
 }
 
+/// A robot with the sensors of the run.
+type Equipped<'s> = Box<dyn Fn(&SimulationConfig) -> SimulatedRobot + 's>;
+
 impl SimulateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         #[cfg(not(any(feature = "ros1", feature = "ros2")))]
@@ -232,30 +236,46 @@ impl SimulateArguments {
                 SimulationConfig::at_start(plan.clone(), facing, self.seed)
             }
         };
-        let (robot, sensor, sensors, frame_kind) = match (&scanner, self.by_scene) {
-            (Some(scanner), _) if self.sensor == SensorChoice::Laser => {
-                let sensor = RobotSensor::Laser(Box::default());
-                (config.by_laser(scanner), Some(sensor), None, "scans")
-            }
-            (_, true) => (config.by_scene(), None, None, "scenes"),
-            (_, false) => {
-                let look = self.appearance.look;
-                let effects = self.appearance.effects(self.seed)?;
-                let camera = camera_with(&effects, &self.camera()?)?;
-                let sensors = self.sensors(&camera)?;
-                feasible::check_marker(&plan, facing, &sensors, look)?;
-                let robot = config.with_images(sensors.rig(), look, &effects);
-                let sensor = RobotSensor::Camera(Box::new(sensors.sensor(look)));
-                (robot, Some(sensor), Some((camera, sensors.colours(look).clone())), "images")
-            }
-        };
+        let config = if self.has_team() { config.with_team() } else { config };
+        let (equipped, sensor, sensors, frame_kind): (Equipped, _, _, _) =
+            match (&scanner, self.by_scene) {
+                (Some(scanner), _) if self.sensor == SensorChoice::Laser => {
+                    let sensor = RobotSensor::Laser(Box::default());
+                    let equipped = |config: &SimulationConfig| config.by_laser(scanner);
+                    (Box::new(equipped), Some(sensor), None, "scans")
+                }
+                (_, true) => (Box::new(SimulationConfig::by_scene), None, None, "scenes"),
+                (_, false) => {
+                    let look = self.appearance.look;
+                    let effects = self.appearance.effects(self.seed)?;
+                    let camera = camera_with(&effects, &self.camera()?)?;
+                    let sensors = self.sensors(&camera)?;
+                    feasible::check_marker(&plan, facing, &sensors, look)?;
+                    let rig = sensors.rig().clone();
+                    let equipped =
+                        move |config: &SimulationConfig| config.with_images(&rig, look, &effects);
+                    let sensor = RobotSensor::Camera(Box::new(sensors.sensor(look)));
+                    let sensors = Some((camera, sensors.colours(look).clone()));
+                    (Box::new(equipped), Some(sensor), sensors, "images")
+                }
+            };
+        let robot = equipped(&config);
         let robot = match &scanner {
             Some(scanner) if self.sensor == SensorChoice::Both => {
                 robot.with_scanner(config.scanner(scanner))
             }
             _ => robot,
         };
+        let robot = if self.has_team() {
+            robot.with_other(equipped(&config.other()), sensor.clone())
+        } else {
+            robot
+        };
         Ok(Simulation { world, plan, facing, settings, robot, sensor, sensors, frame_kind })
+    }
+
+    fn has_team(&self) -> bool {
+        matches!(self.aid, AidKind::Team(_))
     }
 
     /// The settings of a robot with its marking aid.
@@ -269,8 +289,7 @@ impl SimulateArguments {
             return Err(CliError::at(format!("--{option}"), cause));
         }
         if settings.budget != RunBudget::default() {
-            let cause =
-                "the robot cannot return to a marker that it carries; only darts are counted";
+            let cause = "the robot cannot return to a marker that moves; only darts are counted";
             return Err(CliError::at("--budget", cause));
         }
         let mut algorithms = MappingAlgorithm::all();
@@ -484,7 +503,7 @@ fn serve(
 
 /// Parses the name of a marking aid that the simulated robot has.
 fn robot_aids() -> impl TypedValueParser<Value = AidKind> {
-    let aids = [AidKind::from(Directional), MOVABLE.into()];
+    let aids = [AidKind::from(Directional), MOVABLE.into(), AidKind::Team(PAIR)];
     let names = aids.map(|aid| PossibleValue::new(aid.name()).help(aid.about()));
     PossibleValuesParser::new(names).try_map(|name| aid::named(&name))
 }
@@ -516,6 +535,7 @@ Examples:
   toposlam simulate worlds/shape-6.toml --seed 3 --json
   toposlam simulate worlds/building-12.toml --by-scene --algorithm algorithm1
   toposlam simulate worlds/shape-8.toml --aid movable
+  toposlam simulate worlds/shape-8.toml --aid team-2
   toposlam simulate worlds/shape-6.toml --sensor laser --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --sensor laser --scanner rplidar-a1
   toposlam simulate worlds/shape-6.toml --fault blocked@40

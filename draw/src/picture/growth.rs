@@ -5,7 +5,6 @@
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    mapping::PartialMap,
     marker::Directional,
 };
 
@@ -24,8 +23,7 @@ const OPEN: f64 = 5.0;
 const STUB: [f64; 2] = [1.3, 0.36];
 
 /// A picture of each of these maps, which are stages of one map; none of an empty map.
-pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
-    let maps: Vec<OpenGraph> = maps.iter().map(OpenGraph::from).collect();
+pub(crate) fn growth(maps: &[OpenGraph]) -> Vec<String> {
     let last = maps.last().and_then(Whole::new);
     let stages: Vec<_> = maps.iter().map(|map| stage(map, last.as_ref())).collect();
     let drawings = stages.iter().flatten().map(|(_, drawing)| drawing.extent());
@@ -34,7 +32,7 @@ pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
         let (graph, drawing) = stage?;
         Some(document(map, &graph, &Drawing { room, ..drawing }))
     };
-    stages.into_iter().zip(&maps).map(|stage| svg(stage).unwrap_or_default()).collect()
+    stages.into_iter().zip(maps).map(|stage| svg(stage).unwrap_or_default()).collect()
 }
 
 /// A picture of a graph with its open darts; `None` of an empty one.
@@ -189,6 +187,7 @@ mod tests {
     use std::{collections::HashMap, f64::consts::TAU};
 
     use resvg::usvg::roxmltree::{Document, Node};
+    use toposlam_model::mapping::PartialMap;
 
     use super::{
         super::{
@@ -208,12 +207,16 @@ mod tests {
         names.map(|name| number(node, name))
     }
 
+    fn open(maps: &[PartialMap]) -> Vec<OpenGraph> {
+        maps.iter().map(OpenGraph::from).collect()
+    }
+
     #[test]
     fn every_unexplored_dart_ends_in_an_open_circle() {
         for world in ["shape-6", "shape-8", "building-12"] {
             let maps = stages(world);
             assert!(maps.last().unwrap().complete().is_some());
-            for (map, svg) in maps.iter().zip(growth(&maps)) {
+            for (map, svg) in maps.iter().zip(growth(&open(&maps))) {
                 let document = Document::parse(&svg).unwrap();
                 let count = |class| of_class(&document, class).len();
                 assert_eq!(count("unexplored"), map.unexplored_count() as usize);
@@ -227,7 +230,7 @@ mod tests {
     #[test]
     fn the_doors_of_every_stage_stand_in_clockwise_order() {
         let maps = stages("building-12");
-        for (map, svg) in maps.iter().zip(growth(&maps)) {
+        for (map, svg) in maps.iter().zip(growth(&open(&maps))) {
             let document = Document::parse(&svg).unwrap();
             let centres: Vec<_> = of_class(&document, "vertex")
                 .into_iter()
@@ -255,7 +258,7 @@ mod tests {
     #[test]
     fn what_is_known_stays_where_it_is() {
         let mut first = HashMap::new();
-        let pictures = growth(&stages("shape-8"));
+        let pictures = growth(&open(&stages("shape-8")));
         for svg in &pictures {
             let document = Document::parse(svg).unwrap();
             let box_of =
@@ -274,7 +277,8 @@ mod tests {
     fn a_map_that_did_not_grow_into_the_last_one_is_drawn_by_itself() {
         let (other, mut maps) = (stages("shape-8"), stages("shape-6"));
         maps.insert(0, other[3].clone());
-        let alone = Document::parse(&growth(&maps)[0]).map(|it| of_class(&it, "vertex").len());
+        let alone =
+            Document::parse(&growth(&open(&maps))[0]).map(|it| of_class(&it, "vertex").len());
         assert_eq!(alone, Ok(other[3].vertex_count()));
     }
 }

@@ -61,7 +61,7 @@ pub use png::{PictureError, png};
 #[cfg(test)]
 pub(crate) use run::example;
 pub use run::run_svg;
-pub(crate) use run::{Drawn, run_drawing};
+pub(crate) use run::{BODY, Drawn, run_drawing};
 pub use side_by_side::side_by_side;
 #[cfg(feature = "png")]
 pub use stage::with_legend;

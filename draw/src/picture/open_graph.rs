@@ -51,6 +51,12 @@ impl OpenGraph {
         self.opposite.len()
     }
 
+    /// The same graph without the marker, which may be elsewhere now.
+    #[must_use]
+    pub(crate) fn without_marker(self) -> Self {
+        Self { marker: None, ..self }
+    }
+
     pub(super) fn marker(&self) -> Option<Dart> {
         self.marker
     }

@@ -21,6 +21,9 @@ pub struct Team {
     shows_heading: bool,
 }
 
+/// Two robots, each of which shows the other along which dart it stands.
+pub const PAIR: Team = Team::of(2, true);
+
 impl Team {
     pub(crate) const fn of(robots: u8, shows_heading: bool) -> Self {
         Self { robots, shows_heading }

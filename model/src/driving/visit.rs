@@ -33,6 +33,8 @@ pub enum SoughtMarker {
     Pointing,
     /// It lies at any junction, and points along no door.
     Lying,
+    /// The robot looks for none on its way.
+    Nothing,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -177,10 +179,14 @@ impl JunctionEstimate {
     /// junctions that are Ls. That no marker lies here is known once it would have been seen.
     pub fn percept(&self) -> Option<Percept> {
         let shape = self.shape()?;
-        let may_lie_here = shape.is_l() || self.sought == SoughtMarker::Lying;
+        let may_lie_here = match self.sought {
+            SoughtMarker::Pointing => shape.is_l(),
+            SoughtMarker::Lying => true,
+            SoughtMarker::Nothing => false,
+        };
         let sighting = match (self.marker.filter(|_| may_lie_here), self.sought) {
             (None, _) if may_lie_here && !self.looked => return None,
-            (None, _) => Sighting::Nothing,
+            (None, _) | (_, SoughtMarker::Nothing) => Sighting::Nothing,
             (Some(_), SoughtMarker::Lying) => Sighting::Lying(1),
             (Some(Glimpse { along_entry: true, .. }), SoughtMarker::Pointing) => {
                 Sighting::Pointing(Door::BACK)

@@ -26,6 +26,8 @@ class Floor {
     const { x, y, width, height } = this.svg.viewBox.baseVal;
     this.box = { x, y, width, height };
     this.names = all(".names text").map((name) => [name, Number(name.getAttribute("font-size"))]);
+    // Where the marking aid was drawn, if it moves.
+    [this.aid, this.aidAt] = [this.svg.querySelector(".aid"), rounds.find((round) => round.aid)?.aid];
     this.robot = drawn("g", { class: "robot" });
     this.robot.append(drawn("circle", { r: 1 }), drawn("path", { d: "M0 0H1" }));
     // Below the signs of calls, so that a cross at the robot's place is visible.
@@ -78,12 +80,23 @@ class Floor {
     this.place();
   }
 
+  /** Shows the marking aid where it is; nothing if it stays where it was drawn, and null if the robot carries it. */
+  placeAid(place) {
+    if (place === undefined) return;
+    this.aid.classList.toggle("later", place === null);
+    if (place === null) return;
+    const { x, y, turn } = this.aidAt;
+    const turned = `rotate(${place.turn - turn}deg) translate(${-x}px, ${-y}px)`;
+    this.aid.style.transform = `translate(${place.x}px, ${place.y}px) ${turned}`;
+  }
+
   place() {
     if (this.at === undefined) return;
     const { x, y } = this.rounds[this.at];
     const size = Math.max(this.body, 7 * this.pixel);
     const turn = this.turns[this.at];
     this.robot.style.transform = `translate(${x}px, ${y}px) rotate(${turn}deg) scale(${size})`;
+    this.placeAid(this.rounds[this.at].aid);
     reveal(this.svg.parentElement, this.robot);
   }
 }

@@ -9,14 +9,11 @@ use super::{folding, rounded, words};
 use crate::{
     moment::clock,
     page::template::in_script,
-    picture::{Drawn, Point},
+    picture::{BODY, Drawn, Point},
     run_page_data::{PageArrival, PageFrame, RunPageData},
     scene,
     story::Story,
 };
-
-/// The radius of the robot's body, in metres.
-const BODY: f64 = 0.41 / 2.0;
 
 /// The data as JSON that can stand inside a `script` element.
 pub(super) fn json(run_data: &RunPageData, drawn: &Drawn) -> String {
@@ -24,12 +21,14 @@ pub(super) fn json(run_data: &RunPageData, drawn: &Drawn) -> String {
     let story = Story::new(&run_data.world, run_data.facing);
     let (story, lines) = story.of_steps(&run_data.steps);
     let last = run_data.rounds.len().saturating_sub(1);
-    let frames = run_data.rounds.iter().zip(&drawn.places).enumerate();
-    let rounds = frames.map(|(nth, (frame, at))| {
+    let places = drawn.places.iter().zip(&drawn.aids);
+    let frames = run_data.rounds.iter().zip(places).enumerate();
+    let rounds = frames.map(|(nth, (frame, (at, aid)))| {
         // The last frame shows the end of the run.
         let steps = if nth == last { run_data.steps.len() } else { frame.steps };
         let known = [lines[steps], run_data.maps(steps).count()];
-        round(frame, *at, known, &mut album)
+        let aid = run_data.aid.moves().then(|| aid.map_or(Value::Null, place_of_aid));
+        round(frame, (*at, aid), known, &mut album)
     });
     let rounds: Vec<_> = rounds.collect();
     in_script(&json!({
@@ -62,11 +61,11 @@ impl<'a> Album<'a> {
 /// The lines of the story and the maps that are shown are counted.
 fn round<'a>(
     round: &'a PageFrame,
-    at: Point,
+    (at, aid): (Point, Option<Value>),
     [story, maps]: [usize; 2],
     album: &mut Album<'a>,
 ) -> Value {
-    json!({
+    let mut fields = json!({
         "time": clock(round.time),
         "x": rounded(at.x),
         "y": rounded(at.y),
@@ -79,7 +78,16 @@ fn round<'a>(
         "image": round.image.as_ref().map(|jpeg| album.place(jpeg)),
         "story": story,
         "maps": maps,
-    })
+    });
+    if let Some(aid) = aid {
+        fields["aid"] = aid;
+    }
+    fields
+}
+
+/// Its direction is clockwise on the screen, in degrees.
+fn place_of_aid((at, direction): (Point, f64)) -> Value {
+    json!({ "x": rounded(at.x), "y": rounded(at.y), "turn": rounded(direction.to_degrees()) })
 }
 
 fn call(call: &PageArrival) -> Value {

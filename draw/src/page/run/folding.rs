@@ -43,8 +43,11 @@ struct Stage {
     robot: usize,
 }
 
-/// The data; `null` if there is no arrival.
+/// The data; `null` if there is no arrival, or the marker moves.
 pub(super) fn json(run_data: &RunPageData) -> Value {
+    if run_data.aid.moves() {
+        return Value::Null;
+    }
     let percepts: Vec<Percept> = run_data.calls.iter().map(|call| call.percept).collect();
     let doors: Vec<Door> = run_data.calls.iter().filter_map(|call| call.door).collect();
     let moves = explained_moves(&percepts, &doors);

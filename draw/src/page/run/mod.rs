@@ -7,7 +7,7 @@ mod words;
 
 use super::{PAGE_SCRIPT, PAGE_STYLE, template::filled};
 use crate::{
-    picture::{escaped, growth, run_drawing},
+    picture::{OpenGraph, escaped, growth, run_drawing},
     run_page_data::RunPageData,
 };
 
@@ -46,7 +46,10 @@ pub fn run_page(run_data: &RunPageData) -> String {
 /// Every map, each in its own element; the page shows one of them.
 fn maps(run_data: &RunPageData) -> String {
     let of = |svg: &String| format!("<div class=\"stage\" tabindex=\"0\" hidden>\n{svg}</div>\n");
-    let maps: Vec<_> = run_data.maps(usize::MAX).cloned().collect();
+    let maps = run_data.maps(usize::MAX).map(OpenGraph::from);
+    let moves = run_data.aid.moves();
+    let maps = maps.map(|map| if moves { map.without_marker() } else { map });
+    let maps: Vec<_> = maps.collect();
     growth(&maps).iter().map(of).collect()
 }
 
@@ -58,6 +61,7 @@ fn rounded(number: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use serde_json::{Value, json};
+    use toposlam_model::aid::{AidKind, team::PAIR};
 
     use super::*;
     use crate::{
@@ -113,6 +117,32 @@ mod tests {
         // The last frame has the whole story, with what came after it.
         assert_eq!(data["rounds"][6]["story"], data["story"].as_array().unwrap().len());
         assert_eq!(data["rounds"][6]["maps"], run_data.maps(usize::MAX).count());
+    }
+
+    /// The other robot waits 0.5 m north of the corner, and then 0.5 m south of the northern dead end.
+    #[test]
+    fn a_marking_aid_that_moves_is_shown_where_it_is() {
+        let mut run_data = example::run_page_data();
+        let fixed = run_page(&run_data);
+        assert!(data_of(&fixed)["rounds"][0].get("aid").is_none());
+        run_data.aid = AidKind::Team(PAIR);
+        let graph = run_data.plan.graph();
+        let far = graph.opposite(run_data.facing);
+        let places = [Some(run_data.facing), Some(far), None];
+        for (round, place) in run_data.rounds.iter_mut().zip(places) {
+            round.aid = place;
+        }
+        let data = data_of(&run_page(&run_data));
+        let round = |at: usize| &data["rounds"][at];
+        let number = |value: &Value| value.as_f64().unwrap();
+        let [here, there] = [0, 1].map(|at| &round(at)["aid"]);
+        let metre = 70.0;
+        let between = number(&here["y"]) - number(&there["y"]);
+        assert!((between - 3.0 * metre).abs() < 0.2, "{between}");
+        assert_eq!([&here["turn"], &there["turn"]], [-90.0, 90.0]);
+        assert!((number(&round(0)["y"]) - number(&here["y"]) - 0.5 * metre).abs() < 0.2);
+        assert_eq!(round(2)["aid"], Value::Null);
+        assert_eq!(data["trail"], Value::Null);
     }
 
     #[test]

@@ -13,6 +13,7 @@ use toposlam_model::{
     floor_plan::FloorPlan,
     format::{named_world::NamedWorld, world_file},
     mapping::{Algorithm1Run, MapWalk, MappingEvent, Observed, PartialMap, explore},
+    marker::Directional,
     percept::{Door, Percept, Sighting},
     world::GraphWorld,
 };
@@ -36,6 +37,7 @@ pub(crate) fn run_page_data() -> RunPageData {
         command: Some(Command { turn: 0.0, forward: 0.5 }),
         image: (number > 0).then(|| vec![number.min(4) as u8; 3]),
         steps: 1.min(number),
+        aid: None,
     };
     let ways = [0.0, 0.6, 2.0, 4.0, 3.5, 2.0, 0.1];
     let rounds: Vec<_> = ways.into_iter().enumerate().map(round).collect();
@@ -52,6 +54,7 @@ pub(crate) fn run_page_data() -> RunPageData {
         calls: [(1, 2), (4, 1), (7, 3)].map(call).to_vec(),
         plan,
         facing,
+        aid: Directional.into(),
         rounds,
         ending: "the robot gave up".to_owned(),
     }

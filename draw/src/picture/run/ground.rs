@@ -1,8 +1,11 @@
 //! The ground of a run: floor, walls, the names of the junctions, and the marker. Section 2.4.
 
 use toposlam_model::{
+    aid::AidKind,
+    driving::WAITING,
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, walls},
+    marker::MarkerLook,
 };
 use toposlam_vision::params::{MARKER_LENGTH, MARKER_WIDTH};
 
@@ -13,6 +16,8 @@ use super::super::{
     text,
 };
 
+/// The radius of a robot's body, in metres.
+pub(crate) const BODY: f64 = 0.41 / 2.0;
 /// The longer side of a drawing, in units, and the bounds of the scale, in units per metre.
 const SIDE: f64 = 620.0;
 const METRE: [f64; 2] = [36.0, 70.0];
@@ -107,19 +112,34 @@ impl<'a> Ground<'a> {
         page.line("</g>");
     }
 
-    /// The marker: a rectangle, centred on the turning point, that points along a hallway.
-    pub(super) fn write_marker(&self, page: &mut Page, facing: Dart) {
-        let ahead = along(self.plan.direction(facing));
-        let middle = self.turning_point(self.plan.graph().vertex(facing));
+    /// The middle of a marker that lies at a dart, or of a robot that waits there, and the unit vector along the dart.
+    pub(super) fn aid_at(&self, aid: AidKind, dart: Dart) -> (Point, Point) {
+        let ahead = along(self.plan.direction(dart));
+        let turning_point = self.turning_point(self.plan.graph().vertex(dart));
+        let off = if matches!(aid, AidKind::Team(_)) { WAITING } else { 0.0 };
+        (turning_point + ahead * (off * self.metre), ahead)
+    }
+
+    /// The marker: a rectangle, centred on the turning point, that points along a hallway, if it does; or another robot, which
+    /// waits in its hallway.
+    pub(super) fn write_aid(&self, page: &mut Page, aid: AidKind, facing: Dart) {
+        let (middle, ahead) = self.aid_at(aid, facing);
         let length = ahead * (MARKER_LENGTH / 2.0 * self.metre);
         let width = ahead.quarter_turn() * (MARKER_WIDTH / 2.0 * self.metre);
+        page.line("<g class=\"aid\">");
+        if matches!(aid, AidKind::Team(_)) {
+            let radius = BODY * self.metre;
+            page.sign(&Sign::Ring { centre: middle, radius, look: MarkerLook::One });
+        }
         page.bar(middle, width, length);
-        let arrow = Sign::Arrow {
-            at: middle + length,
-            direction: ahead.angle(),
-            scale: 0.26 * self.metre / ARROW,
-        };
-        page.sign(&arrow);
+        if !matches!(aid, AidKind::Markers(_)) {
+            page.sign(&Sign::Arrow {
+                at: middle + length,
+                direction: ahead.angle(),
+                scale: 0.26 * self.metre / ARROW,
+            });
+        }
+        page.line("</g>");
     }
 }
 

@@ -19,6 +19,7 @@ use crate::run_page_data::{PageFrame, RunPageData};
 pub(super) use trajectory::{pieces, ramp};
 
 use calls::Badges;
+pub(crate) use ground::BODY;
 use ground::Ground;
 
 /// The picture of a run as an SVG document. The same run gives the same bytes.
@@ -37,19 +38,26 @@ pub(crate) fn run_drawing(run_data: &RunPageData) -> Drawn {
     let drawing = RunDrawing::new(run_data);
     let extent = drawing.extent();
     let sheet = Sheet { title: "", caption: "", extent, metre: None, up: NORTH };
-    let mut places = Vec::new();
+    let (mut places, mut aids) = (Vec::new(), Vec::new());
     let svg = sheet.document(&[], None, |page| {
         drawing.write(page);
         let at = |round: &PageFrame| page.at(drawing.ground.at(round.pose.position));
         places = run_data.rounds.iter().map(at).collect();
+        let of_aid = |round: &PageFrame| {
+            let (at, direction) = drawing.ground.aid_at(run_data.aid, round.aid?);
+            Some((page.at(at), direction.angle()))
+        };
+        aids = run_data.rounds.iter().map(of_aid).collect();
     });
-    Drawn { svg, places, metre: drawing.ground.metre }
+    Drawn { svg, places, aids, metre: drawing.ground.metre }
 }
 
 pub(crate) struct Drawn {
     pub(crate) svg: String,
     /// The position of each frame, in units of the drawing, x to the right and y down.
     pub(crate) places: Vec<Point>,
+    /// That of the marking aid at each frame, and its direction on the screen in radians; `None` if the robot carries it.
+    pub(crate) aids: Vec<Option<(Point, f64)>>,
     /// Units of the drawing per metre.
     pub(crate) metre: f64,
 }
@@ -81,7 +89,7 @@ impl<'a> RunDrawing<'a> {
         ground.write(page);
         passes::write(page, ground, &run_data.rounds);
         trajectory::write(page, ground, &run_data.rounds);
-        ground.write_marker(page, run_data.facing);
+        ground.write_aid(page, run_data.aid, run_data.facing);
         calls::write(page, ground, &run_data.calls);
         badges.write(page);
     }
