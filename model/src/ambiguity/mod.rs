@@ -6,6 +6,7 @@
 //! without it. The [`AmbiguitySearch`] finds all such worlds of a class by the quotient of each.
 
 mod candidate;
+mod certificate;
 mod comparison;
 mod findings;
 mod grouping;
@@ -19,6 +20,7 @@ mod twins;
 mod witness;
 
 pub use candidate::AmbiguityCandidate;
+pub use certificate::shortest_certificate;
 pub use comparison::{Bisimulation, Comparison};
 pub use findings::{AmbiguousGroup, Findings, KeptPairs, PlacedWorld, SizeFindings, Unfinished};
 pub use search::{AmbiguitySearch, SearchPart};
