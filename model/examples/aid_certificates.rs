@@ -21,7 +21,7 @@ use toposlam_model::{
 const MOST: usize = 200_000;
 
 fn main() {
-    let sizes = 3..=6;
+    let sizes = 3..=5;
     let all: Vec<Vec<EmbeddedGraph>> = sizes
         .clone()
         .map(|edges| {
