@@ -1,15 +1,20 @@
 //! The folding explorer with the directional marker whose robot also measures lengths, or has a compass.
 
+use std::borrow::Cow;
+
 use proptest::prelude::*;
 use toposlam_model::{
-    aid::{RefusedAction, compass::Directions},
-    check::{judge, judge_start},
+    aid::{AidKind, RefusedAction, compass::Directions},
+    check::{judge, judge_map, judge_start},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     floor_plan::Direction,
     folding::{ArrivalSenses, LengthInterval, certificate_length},
     isomorphism::Candidate,
-    mapping::{Explorer, FoldingRun, MappingError, explore},
+    mapping::{
+        DEFAULT_DART_BOUND, ExploredMap, Explorer, FACING, FoldingRun, MappingAlgorithm,
+        MappingError, explore,
+    },
     percept::CompassView,
     world::{GraphWorld, SensingWorld},
 };
@@ -108,6 +113,38 @@ fn lengths_that_are_not_exact_or_not_different_save_moves() {
         moves.map(|moves| moves.into_iter().sum::<u64>())
     });
     assert_eq!(totals, [[66_649, 66_687], [48_001, 47_982]]);
+}
+
+/// A short string serves the folding explorer as a directional marker. No other explorer uses lengths.
+#[test]
+fn lengths_save_moves_with_a_short_string_and_none_with_other_explorers() {
+    let moves = |algorithm: MappingAlgorithm, graph: &EmbeddedGraph, is_measured: bool| {
+        let length = |dart| LengthInterval::exact(1000 * (edge(graph, dart) + 1));
+        let world = GraphWorld::with_aid(graph, algorithm.aid(), Dart(0));
+        let mut world = SensingWorld::new(world, |world: &GraphWorld<'_, AidKind>| {
+            let length = is_measured.then(|| length(world.pose()));
+            ArrivalSenses { length, compass: None }
+        });
+        let (walk, mapped) = algorithm.map_world(&mut world, DEFAULT_DART_BOUND, &mut ());
+        mapped.unwrap();
+        let map = Cow::Borrowed(walk.map().complete().unwrap());
+        let map = ExploredMap { graph: map, facing: FACING, pose: walk.robot() };
+        let pose = world.world().pose();
+        judge_map(&map, (graph, Dart(0)), pose, &mut Candidate::default()).unwrap();
+        walk.moves()
+    };
+    let graphs: Vec<_> = (1..=6).flat_map(|edges| starts(Class::Simple, edges)).collect();
+    for algorithm in MappingAlgorithm::all() {
+        let [without, with] = [false, true].map(|is_measured| -> u64 {
+            graphs.iter().map(|graph| moves(algorithm, graph, is_measured)).sum()
+        });
+        let aid = algorithm.aid().name();
+        if ["string-1", "string-2", "string-3"].contains(&aid) || algorithm.name() == "folding" {
+            assert!(with < without, "{aid}: {with} {without}");
+        } else {
+            assert_eq!(with, without, "{aid}");
+        }
+    }
 }
 
 /// Every world with directions up to these sizes.
