@@ -38,6 +38,11 @@ impl LengthInterval {
         Self { least, greatest }
     }
 
+    /// The least and the greatest length.
+    pub fn bounds(self) -> [u32; 2] {
+        [self.least, self.greatest]
+    }
+
     pub fn contains(self, length: u32) -> bool {
         (self.least..=self.greatest).contains(&length)
     }
