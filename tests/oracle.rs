@@ -14,10 +14,11 @@ use toposlam_model::{
     check::{Check, RunChoices, Shard, Tally},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
-    folding::{FoldedTrail, certificate_length, fold},
+    floor_plan::Direction,
+    folding::{ArrivalSenses, FoldedTrail, LengthInterval, TrailError, certificate_length, fold},
     format::world_file,
     mapping::MappingAlgorithm,
-    percept::{Door, Percept, Sighting},
+    percept::{CompassView, Door, Percept, Sighting},
 };
 
 use crate::{printed, program, repository};
@@ -70,18 +71,16 @@ fn numbers(list: &Value) -> Vec<u32> {
     list.as_array().unwrap().iter().map(|number| number.as_u64().unwrap() as u32).collect()
 }
 
-/// A folded trail as a JSON object: its darts are numbered breadth first from where the walk began.
-fn numbered(trail: &FoldedTrail) -> Value {
+/// The darts of a folded trail, breadth first from where the walk began, and the degrees of its vertices in this order.
+fn breadth_first(trail: &FoldedTrail) -> (Vec<Dart>, Vec<u32>) {
     let (mut order, mut degrees) = (Vec::new(), Vec::new());
-    let mut number: HashMap<Dart, usize> = HashMap::new();
+    let mut reached = BTreeSet::new();
     let mut reach = |pose: Dart, order: &mut Vec<Dart>| {
-        if !number.contains_key(&pose) {
+        if !reached.contains(&pose) {
             degrees.push(trail.degree(pose));
-            for door in 0..trail.degree(pose) {
-                let dart = trail.behind(pose, Door(door));
-                number.insert(dart, order.len());
-                order.push(dart);
-            }
+            let around = (0..trail.degree(pose)).map(|door| trail.behind(pose, Door(door)));
+            reached.extend(around.clone());
+            order.extend(around);
         }
     };
     reach(trail.root_of(Dart(0)), &mut order);
@@ -92,6 +91,13 @@ fn numbered(trail: &FoldedTrail) -> Value {
             reach(far, &mut order);
         }
     }
+    (order, degrees)
+}
+
+/// A folded trail as a JSON object: its darts are numbered breadth first.
+fn numbered(trail: &FoldedTrail) -> Value {
+    let (order, degrees) = breadth_first(trail);
+    let number: HashMap<Dart, usize> = order.iter().copied().zip(0..).collect();
     let opposite: Vec<_> =
         order.iter().map(|&dart| trail.opposite(dart).map(|far| number[&far])).collect();
     json!({
@@ -103,18 +109,23 @@ fn numbered(trail: &FoldedTrail) -> Value {
     })
 }
 
+/// The percepts and the doors of a walk.
+fn percepts_and_doors(walk: &Value) -> (Vec<Percept>, Vec<Door>) {
+    let percept = |percept: &Value| {
+        let door = percept[1].as_u64().map(|door| Door(door as u32));
+        let sighting = door.map_or(Sighting::Nothing, Sighting::Pointing);
+        Percept { degree: percept[0].as_u64().unwrap() as u32, sighting }
+    };
+    let percepts = walk["percepts"].as_array().unwrap().iter().map(percept).collect();
+    (percepts, numbers(&walk["doors"]).into_iter().map(Door).collect())
+}
+
 #[test]
 fn the_same_walks_fold_to_the_same_graphs() {
     let walks = oracle_objects("folding.py walks 600");
     let mut kinds = [0, 0, 0];
     for walk in &walks {
-        let percept = |percept: &Value| {
-            let door = percept[1].as_u64().map(|door| Door(door as u32));
-            let sighting = door.map_or(Sighting::Nothing, Sighting::Pointing);
-            Percept { degree: percept[0].as_u64().unwrap() as u32, sighting }
-        };
-        let percepts: Vec<_> = walk["percepts"].as_array().unwrap().iter().map(percept).collect();
-        let doors: Vec<_> = numbers(&walk["doors"]).into_iter().map(Door).collect();
+        let (percepts, doors) = percepts_and_doors(walk);
         let folded = fold(&percepts, &doors);
         kinds[folded.as_ref().map_or(2, |trail| usize::from(trail.is_complete()))] += 1;
         let ours = folded.as_ref().map_or(Value::Null, numbered);
@@ -122,6 +133,49 @@ fn the_same_walks_fold_to_the_same_graphs() {
     }
     // Open and complete folded trails, and contradictions.
     assert!(walks.is_empty() || kinds.iter().all(|&count| count > 50), "{kinds:?}");
+}
+
+/// What a robot with lengths and a compass senses; `sensed` is a measured length, and the directions of the doors or null.
+fn senses(sensed: &Value) -> ArrivalSenses {
+    let length = LengthInterval::measured(sensed[0].as_u64().unwrap() as u32, 100);
+    let directions = sensed[1].as_array().into_iter().flatten();
+    let view = directions.map(|direction| Direction::ALL[direction.as_u64().unwrap() as usize]);
+    let compass = sensed[1].is_array().then(|| CompassView::new(view));
+    ArrivalSenses { length: Some(length), compass }
+}
+
+#[test]
+fn the_same_lengths_and_directions_are_known_of_the_same_walks() {
+    let walks = oracle_objects("senses.py 600");
+    let mut contradictions = 0;
+    for walk in &walks {
+        let (percepts, doors) = percepts_and_doors(walk);
+        let sensed: Vec<_> = walk["sensed"].as_array().unwrap().iter().map(senses).collect();
+        let folded = || -> Result<FoldedTrail, TrailError> {
+            let mut trail = FoldedTrail::new(percepts[0])?;
+            trail.sense(sensed[0])?;
+            for ((&door, &percept), &senses) in doors.iter().zip(&percepts[1..]).zip(&sensed[1..]) {
+                trail.step(door, percept)?;
+                trail.sense(senses)?;
+            }
+            Ok(trail)
+        };
+        let ours = folded().map_or(Value::Null, |trail| {
+            let (order, _) = breadth_first(&trail);
+            let length = |&dart: &Dart| {
+                let length = trail.length(dart);
+                (length != LengthInterval::ANY).then(|| length.bounds())
+            };
+            let direction = |&dart: &Dart| trail.direction(dart).map(|direction| direction as u32);
+            json!({
+                "lengths": order.iter().map(length).collect::<Vec<_>>(),
+                "directions": order.iter().map(direction).collect::<Vec<_>>(),
+            })
+        });
+        contradictions += usize::from(ours.is_null());
+        assert_eq!(ours, walk["folded"], "{walk}");
+    }
+    assert!(walks.is_empty() || (50..walks.len() - 50).contains(&contradictions));
 }
 
 #[test]

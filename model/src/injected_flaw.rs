@@ -9,6 +9,10 @@ pub(crate) enum InjectedFlaw {
     /// A hypothesis that contradicts itself is alive.
     ContradictionIgnored,
     SightingsNotCompared,
+    /// Edges of different lengths can be one.
+    LengthsNotCompared,
+    /// After a hypothesis, an edge keeps the length that it had under it.
+    LengthNotRestored,
     /// A place joins the map although a hypothesis about it is alive.
     PlaceAddedTooEarly,
     OneHypothesisExamined,

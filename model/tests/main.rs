@@ -64,6 +64,7 @@ mod explorers;
 mod false_each_time;
 mod figure_1;
 mod folding;
+mod folding_senses;
 mod lazy;
 mod markers;
 mod movable;

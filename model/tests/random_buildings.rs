@@ -2,12 +2,15 @@
 
 #[path = "../examples/random_buildings/buildings.rs"]
 mod buildings;
+#[path = "../examples/random_buildings/sensed.rs"]
+mod sensed;
 #[path = "../examples/random_buildings/totals.rs"]
 mod totals;
 
 use toposlam_model::mapping::MappingAlgorithm;
 
 use buildings::{MORE_HALLWAYS, buildings, moves};
+use sensed::{LengthError, Lengths, Senses, measured_buildings, moves_with};
 use totals::Totals;
 
 #[test]
@@ -42,5 +45,28 @@ fn the_published_moves_with_other_aids_are_those_of_right_maps() {
             buildings(junctions, MORE_HALLWAYS).iter().map(|graph| moves(algorithm, graph).0).sum()
         };
         assert_eq!([25, 50].map(total), expected, "{aid}");
+    }
+}
+
+/// The moves with lengths and a compass that `docs/aids.md` publishes, of the smaller buildings.
+#[test]
+fn the_published_moves_with_senses_are_those_of_right_maps() {
+    use LengthError::{EachHallway, EachTime};
+    use Lengths::{OfGrid, OfHallways};
+    for (of, lengths, compass, expected) in [
+        (OfHallways, Some(EachTime(0)), false, [896, 2_402]),
+        (OfHallways, Some(EachTime(100)), false, [971, 2_560]),
+        (OfHallways, Some(EachHallway(100)), false, [959, 2_544]),
+        (OfHallways, Some(EachTime(100)), true, [896, 2_318]),
+        (OfGrid, Some(EachTime(0)), false, [952, 2_504]),
+        (OfGrid, None, true, [898, 2_345]),
+        (OfGrid, None, false, [1_213, 3_229]),
+    ] {
+        let senses = Senses { lengths, compass };
+        let total = |junctions| -> u64 {
+            let buildings = measured_buildings(junctions, MORE_HALLWAYS, of);
+            buildings.iter().map(|building| moves_with(senses, building)).sum()
+        };
+        assert_eq!([25, 50].map(total), expected, "{of:?} {senses:?}");
     }
 }

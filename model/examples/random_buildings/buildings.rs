@@ -22,18 +22,21 @@ pub(crate) const MORE_HALLWAYS: usize = 25;
 const DOORS: usize = 3;
 
 /// A linear congruential generator, with Knuth's constants.
-struct Random(u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as usize % n
     }
 }
 
+/// A building, and the column and the row of each junction on the grid.
+pub(crate) type Building = (EmbeddedGraph, Vec<[usize; 2]>);
+
 /// A building with at most this number of junctions: those that the tree has reached from the first.
-fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> EmbeddedGraph {
+fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> Building {
     let width = (1..=junctions).find(|width| width * width >= junctions).unwrap();
     let right = |at: usize| (at % width + 1 < width).then_some(at + 1);
     let below = |at: usize| Some(at + width);
@@ -62,8 +65,9 @@ fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> Embe
             left -= 1;
         }
     }
-    let lists: Vec<(String, Vec<String>)> = (0..junctions)
-        .filter(|&at| parts.equiv(at, 0))
+    let reached = (0..junctions).filter(|&at| parts.equiv(at, 0));
+    let places = reached.clone().map(|at| [at % width, at / width]).collect();
+    let lists: Vec<(String, Vec<String>)> = reached
         .map(|at| {
             // Clockwise: up, right, down, left.
             let side = |to: usize| match to {
@@ -77,13 +81,18 @@ fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> Embe
             (at.to_string(), around.iter().map(ToString::to_string).collect())
         })
         .collect();
-    EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
+    (EmbeddedGraph::from_neighbour_lists(&lists).unwrap(), places)
 }
 
 /// The buildings of seed 7 with at most so many junctions.
-pub(crate) fn buildings(junctions: usize, more_hallways: usize) -> Vec<EmbeddedGraph> {
+pub(crate) fn buildings_on_grid(junctions: usize, more_hallways: usize) -> Vec<Building> {
     let mut random = Random(7);
     (0..BUILDINGS).map(|_| building(junctions, more_hallways, &mut random)).collect()
+}
+
+/// The embedded graphs of these buildings.
+pub(crate) fn buildings(junctions: usize, more_hallways: usize) -> Vec<EmbeddedGraph> {
+    buildings_on_grid(junctions, more_hallways).into_iter().map(|(graph, _)| graph).collect()
 }
 
 /// The moves of an algorithm whose map is right, and how long it computes.

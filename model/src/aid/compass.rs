@@ -71,6 +71,12 @@ impl Directions {
         self.0.get(dart.at()).copied()
     }
 
+    /// What a robot with a compass sees from a pose.
+    pub fn view(&self, graph: &EmbeddedGraph, pose: Dart) -> CompassView {
+        let doors = (0..graph.degree_around(pose)).map(|door| graph.behind(pose, Door(door)));
+        CompassView::new(doors.filter_map(|dart| self.of(dart)))
+    }
+
     /// The right angles between a dart and the next one clockwise, from 1 to 4.
     fn corner(&self, graph: &EmbeddedGraph, dart: Dart) -> u32 {
         let [here, next] = [dart, graph.clockwise(dart)].map(|dart| self.of(dart));
@@ -193,8 +199,7 @@ impl Marker for Compass<'_> {
     }
 
     fn sighting(&self, graph: &EmbeddedGraph, _facing: Dart, pose: Dart) -> Sighting {
-        let doors = (0..graph.degree_around(pose)).map(|door| graph.behind(pose, Door(door)));
-        Sighting::Compass(CompassView::new(doors.filter_map(|dart| self.0.of(dart))))
+        Sighting::Compass(self.0.view(graph, pose))
     }
 
     fn first_alike(&self, _graph: &EmbeddedGraph, _facing: Dart) -> Dart {

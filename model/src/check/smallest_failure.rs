@@ -5,12 +5,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::{Check, FailedStart, RunChoices, Shard, judge};
 use crate::{
     any_graph::starts,
-    embedded_graph::Dart,
+    embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
+    folding::ArrivalSenses,
     injected_flaw::{InjectedFlaw, inject},
     isomorphism::{Candidate, code},
     mapping::{Explorer, Flaw, explore},
-    world::GraphWorld,
+    world::{GraphWorld, SensingWorld},
 };
 
 /// The edges of a start, its code, and what went wrong there.
@@ -38,6 +39,17 @@ pub(crate) fn smallest_failure<E: Explorer>(
 /// The first start of a class with up to so many edges on which an explorer fails with an injected flaw.
 pub(crate) fn injected_failure<E: Explorer>(
     flaw: Option<InjectedFlaw>,
+    explorer: E,
+    class: Class,
+    most: usize,
+) -> Option<Failure> {
+    injected_failure_with(|_, _| ArrivalSenses::default(), flaw, explorer, class, most)
+}
+
+/// [`injected_failure`] of a robot with other senses: those of a graph and a pose.
+pub(crate) fn injected_failure_with<E: Explorer>(
+    sense: impl Fn(&EmbeddedGraph, Dart) -> ArrivalSenses,
+    flaw: Option<InjectedFlaw>,
     mut explorer: E,
     class: Class,
     most: usize,
@@ -50,10 +62,12 @@ pub(crate) fn injected_failure<E: Explorer>(
                 let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
                 // The map may have more darts than the world.
                 let world = GraphWorld::with_aid(&graph, explorer.aid(), Dart(0));
-                let mut world = world.with_bound(bound);
+                let sense = |world: &GraphWorld<_>| sense(&graph, world.pose());
+                let mut world = SensingWorld::new(world.with_bound(bound), sense);
                 let ended = explore(&mut explorer, &mut world).map_err(Flaw::from);
+                let world = world.world();
                 let judged = ended
-                    .and_then(|()| judge(&explorer, Dart(0), &world, &mut candidate).map(|_| ()));
+                    .and_then(|()| judge(&explorer, Dart(0), world, &mut candidate).map(|_| ()));
                 judged.map_err(|flaw| format!("after {} moves: {flaw}", world.moves()))
             }));
             let report = judged.unwrap_or_else(|_| Err("it panics".to_owned())).err()?;

@@ -2,8 +2,12 @@
 
 use std::ops::Range;
 
-use super::ContradictionReason;
+use super::{
+    ContradictionReason,
+    senses::{ArrivalSenses, LengthInterval, SensedTrail},
+};
 use crate::clone_in_place::clone_in_place;
+use crate::direction::Direction;
 use crate::injected_flaw::InjectedFlaw;
 use crate::percept::{Door, Percept, Sighting};
 
@@ -21,6 +25,7 @@ const NO_NUMBER: u32 = u32::MAX;
 pub(super) struct DartClasses {
     vertices: Vec<TrailVertex>,
     darts: Vec<TrailDart>,
+    sensed: SensedTrail,
     /// The number of classes.
     pub(super) count: usize,
     /// The number of open darts of roots.
@@ -31,7 +36,9 @@ pub(super) struct DartClasses {
     pairs: Vec<(u32, u32)>,
 }
 
-clone_in_place!(DartClasses { vertices, darts, count, open, changes, before_union; scratch pairs });
+clone_in_place!(DartClasses {
+    vertices, darts, sensed, count, open, changes, before_union; scratch pairs
+});
 
 /// A vertex for each percept at a place that was not known.
 #[derive(Clone, Copy, Debug)]
@@ -72,6 +79,10 @@ enum Change {
     Opposite { dart: u32 },
     /// The number of open darts was another.
     Open { before: usize },
+    /// The length of the edge of a root's dart was another.
+    Length { dart: u32, before: LengthInterval },
+    /// The directions at a root were not known.
+    View { root: u32 },
 }
 
 /// Whether two vertices with numbers are distinct.
@@ -87,6 +98,7 @@ impl DartClasses {
     pub(super) fn clear(&mut self) {
         self.vertices.clear();
         self.darts.clear();
+        self.sensed.clear();
         self.changes.clear();
         (self.count, self.open, self.before_union) = (0, 0, 0);
     }
@@ -247,6 +259,69 @@ impl DartClasses {
         compare_sightings(before.seen_from(Door(pose - first)), percept, visits)
     }
 
+    /// Compares what a robot senses with this pose, a dart of a root, with what was sensed before, and keeps both. The length
+    /// is that of the pose's edge; of an open one it is not kept. This is not undone.
+    pub(super) fn sense(
+        &mut self,
+        pose: u32,
+        senses: ArrivalSenses,
+        moves: usize,
+    ) -> Result<(), ContradictionReason> {
+        let &TrailVertex { first, percept: Percept { degree, .. }, visit, .. } = self.vertex(pose);
+        let visits = [visit, moves];
+        if let Some(now) = senses.view(degree) {
+            match self.view(pose) {
+                Some(before) => compare_sightings(before, now, visits)?,
+                None => self.sensed.set_view(self.owner(pose), pose - first, now),
+            }
+        }
+        if let (Some(now), far) = (senses.length, self.opposite(pose))
+            && far != OPEN
+        {
+            let length = common_length(self.sensed.length(pose), now, visits)?;
+            self.sensed.set_length(pose, length);
+            self.sensed.set_length(far, length);
+        }
+        Ok(())
+    }
+
+    /// The length of the edge of a dart of a root.
+    pub(super) fn length(&self, root: u32) -> LengthInterval {
+        self.sensed.length(root)
+    }
+
+    /// The direction of a dart of a root, if it was seen.
+    pub(super) fn direction(&self, root: u32) -> Option<Direction> {
+        match self.view(root)?.sighting {
+            Sighting::Compass(view) => view.directions().next(),
+            _ => None,
+        }
+    }
+
+    /// The directions at the vertex of a dart, for a robot with this pose, as a percept; `None` if they were not seen.
+    fn view(&self, dart: u32) -> Option<Percept> {
+        let index = dart - self.vertex(dart).first;
+        let view = self.sensed.view(self.owner(dart), self.degree(dart))?;
+        Some(view.seen_from(Door(index)))
+    }
+
+    /// Whether what was sensed of two darts, by itself, allows that they are one: the lengths of their edges, and the directions
+    /// at their vertices.
+    #[inline]
+    pub(super) fn senses_agree(&self, one: u32, other: u32) -> bool {
+        self.sensed.is_empty() || self.compare_senses(self.find(one), self.find(other)).is_ok()
+    }
+
+    /// The length of the edge of two darts that are one, if what was sensed of them allows that. They are darts of roots, or the
+    /// second is of one that has become a child.
+    fn compare_senses(&self, one: u32, other: u32) -> Result<LengthInterval, ContradictionReason> {
+        let visits = [one, other].map(|dart| self.visit(dart));
+        if let (Some(one), Some(other)) = (self.view(one), self.view(other)) {
+            compare_sightings(one, other, visits)?;
+        }
+        common_length(self.sensed.length(one), self.sensed.length(other), visits)
+    }
+
     /// Identifies two darts, and all that follows.
     ///
     /// # Errors
@@ -294,6 +369,9 @@ impl DartClasses {
                 }
                 Change::Opposite { dart } => darts[dart as usize].opposite = OPEN,
                 Change::Open { before } => self.open = before,
+                Change::Length { .. } if InjectedFlaw::LengthNotRestored.is_present() => {}
+                Change::Length { dart, before } => self.sensed.set_length(dart, before),
+                Change::View { root } => self.sensed.clear_view(root),
             }
         }
     }
@@ -311,7 +389,10 @@ impl DartClasses {
                         .for_each(&mut visit);
                 }
                 Change::Opposite { dart } => visit(dart),
-                Change::Numbers { .. } | Change::Open { .. } => {}
+                Change::Numbers { .. }
+                | Change::Open { .. }
+                | Change::Length { .. }
+                | Change::View { .. } => {}
             }
         }
     }
@@ -422,8 +503,42 @@ impl DartClasses {
             }
             to = if to + 1 == at + degree { at } else { to + 1 };
         }
+        if self.sensed.is_empty() { Ok(()) } else { self.merge_senses((at, from), turn) }
+    }
+
+    /// What was sensed of a child is true of its root. `first` are the first darts of both; that of the child is so many places
+    /// clockwise from that of the root.
+    fn merge_senses(&mut self, first: (u32, u32), turn: u32) -> Result<(), ContradictionReason> {
+        let (at, from) = first;
+        let degree = self.degree(at);
+        for door in 0..degree {
+            let (to, from) = (self.turned(at, turn + door), from + door);
+            let (before, length) = (self.sensed.length(to), self.compare_senses(to, from)?);
+            if length != before {
+                self.changes.push(Change::Length { dart: to, before });
+                self.sensed.set_length(to, length);
+            }
+        }
+        let [root, child] = [at, from].map(|dart| self.owner(dart));
+        if let (None, Some(view)) =
+            (self.sensed.view(root, degree), self.sensed.view(child, degree))
+        {
+            self.changes.push(Change::View { root });
+            self.sensed.set_view(root, turn, view);
+        }
         Ok(())
     }
+}
+
+/// The length of an edge that has two lengths.
+fn common_length(
+    before: LengthInterval,
+    now: LengthInterval,
+    visits: [usize; 2],
+) -> Result<LengthInterval, ContradictionReason> {
+    let common = before.intersection(now);
+    let common = common.or(InjectedFlaw::LengthsNotCompared.is_present().then_some(before));
+    common.ok_or(ContradictionReason::Length { visits, lengths: [before, now] })
 }
 
 /// Compares what is seen at one vertex, for one pose. A mark on an edge is not at a vertex.

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::LengthInterval;
 use crate::{
     counts::{counted, grouped},
     percept::{Sighting, WalkEvent},
@@ -54,6 +55,11 @@ pub enum ContradictionReason {
         /// What was seen at each, for a robot with the pose of the second.
         sightings: [Sighting; 2],
     },
+    #[error(
+        "an edge at the junctions after {} and {} moves is the same one, with a length of {} and of {}",
+        visits[0], visits[1], lengths[0], lengths[1]
+    )]
+    Length { visits: [usize; 2], lengths: [LengthInterval; 2] },
     #[error("the junction after {} would be turned onto itself", counted(*visit, "move"))]
     Rotation { visit: usize },
     #[error("the junctions after {} and {} moves are the same one and distinct", visits[0], visits[1])]

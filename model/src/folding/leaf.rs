@@ -15,12 +15,13 @@ impl FoldedTrail {
     }
 
     /// Whether a [leaf](Self::is_leaf) can be united with a dart, and no other identification follows: the dart
-    /// is open, at a vertex of the same degree without a marker.
+    /// is open, at a vertex of the same degree without a marker, and what was sensed of both agrees.
     #[inline]
     pub(crate) fn takes_leaf(&self, dart: Dart, leaf: Dart) -> bool {
         self.opposite(dart).is_none()
             && self.degree(dart) == self.degree(leaf)
             && self.sighting(dart) == Sighting::Nothing
+            && self.senses_agree(dart, leaf)
     }
 
     /// Visits the darts that a union of a leaf with a dart that [takes it](Self::takes_leaf) would close, with

@@ -13,6 +13,9 @@
 //! lies at a vertex is compared where vertices are identified for another reason; a mark on an edge without a sense is
 //! not. With these markers a contradiction is still a proof, and its absence proves nothing. An undirected marker lies at
 //! one vertex, so that its sightings can be identified in [several ways](MarkedTrails).
+//!
+//! A robot may [sense](FoldedTrail::sense) more than its percepts: the lengths of edges, and the directions of doors. Vertices
+//! and edges that differ in these are distinct. A complete trail is still the world; there are more contradictions.
 
 mod arrow;
 mod certificate;
@@ -22,6 +25,7 @@ mod contradiction;
 mod leaf;
 mod marked_vertex;
 mod marker_tree;
+mod senses;
 mod smallest;
 mod trail;
 
@@ -31,6 +35,7 @@ pub use closed::ClosedTrail;
 pub use contradiction::{ContradictionReason, FoldError, MAX_DARTS, TrailError};
 pub use marked_vertex::MarkedTrails;
 pub(crate) use marker_tree::MarkerTree;
+pub use senses::{ArrivalSenses, LengthInterval};
 pub use smallest::{SearchLimit, SmallestWorld, WorldSearch, smallest_other_world, smallest_world};
 pub use trail::FoldedTrail;
 

@@ -1,15 +1,18 @@
 //! Folded trails against worlds, against brute force over all small worlds, and against each other.
 
+use std::collections::BTreeMap;
+
 use proptest::prelude::*;
 
 use super::*;
 use crate::{
     aid::State,
     any_graph::{Class, any_graph, starts, walk},
+    direction::Direction,
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::code,
     marker::{DirectedEdge, Directional, Marker, NoMarker},
-    percept::Sighting,
+    percept::{CompassView, Sighting},
     world::{GraphWorld, World},
 };
 
@@ -239,10 +242,17 @@ fn a_trail_with_too_many_darts_is_refused_and_proves_nothing() {
     assert_eq!(fold(&[huge], &[]).unwrap_err(), error);
 }
 
+/// The root of a dart, its opposite, the length of its edge, and its direction.
+type DartState = (Dart, Option<Dart>, LengthInterval, Option<Direction>);
+
 /// Every function of a trail that a union could change.
-fn state(trail: &FoldedTrail, darts: usize) -> (usize, usize, Vec<(Dart, Option<Dart>)>) {
+fn state(trail: &FoldedTrail, darts: usize) -> (usize, usize, Vec<DartState>) {
     let darts = (0..darts as u32).map(Dart);
-    let darts = darts.map(|dart| (trail.root_of(dart), trail.opposite(dart))).collect();
+    let of_dart = |dart| {
+        let (length, direction) = (trail.length(dart), trail.direction(dart));
+        (trail.root_of(dart), trail.opposite(dart), length, direction)
+    };
+    let darts = darts.map(of_dart).collect();
     (trail.vertex_count(), trail.open_count(), darts)
 }
 
@@ -295,7 +305,101 @@ fn reported_exactly<M: Marker + Copy>(
     Ok(())
 }
 
+/// What a robot senses on a walk with the directional marker: for each percept a length, and the quarter turns by which its compass
+/// is wrong there, or `None` if it shows nothing. Doors of vertices with up to four darts lead north, east, south and west, in the
+/// order of the darts.
+fn sensed_on_walk(
+    graph: &EmbeddedGraph,
+    doors: &[Door],
+    measured: &[(u32, Option<u32>)],
+) -> Vec<ArrivalSenses> {
+    let mut pose = Dart(0);
+    let mut senses = Vec::new();
+    for (number, &(length, turn)) in measured.iter().enumerate() {
+        let around = (0..graph.degree_around(pose)).map(|door| graph.behind(pose, Door(door)));
+        let view = |turn| {
+            let direction = |dart| Direction::North.turned(graph.index(dart) + turn);
+            CompassView::new(around.map(direction))
+        };
+        let length = Some(LengthInterval::measured(length, 100));
+        senses.push(ArrivalSenses { length, compass: turn.map(view) });
+        pose = doors.get(number).map_or(pose, |&door| graph.after(pose, door));
+    }
+    senses
+}
+
+/// A walk with what was sensed after each percept, folded.
+fn fold_sensing(
+    percepts: &[Percept],
+    doors: &[Door],
+    senses: &[ArrivalSenses],
+) -> Result<FoldedTrail, TrailError> {
+    let mut trail = FoldedTrail::new(percepts[0])?;
+    trail.sense(senses[0])?;
+    for ((&door, &percept), &senses) in doors.iter().zip(&percepts[1..]).zip(&senses[1..]) {
+        trail.step(door, percept)?;
+        trail.sense(senses)?;
+    }
+    Ok(trail)
+}
+
+/// The lengths of all edges that were traversed, by the larger of their darts in a trail that was folded without senses; `None` if
+/// an edge has two lengths, or a vertex two views.
+fn sensed_of_each(
+    trail: &FoldedTrail,
+    doors: &[Door],
+    senses: &[ArrivalSenses],
+) -> Option<BTreeMap<Dart, LengthInterval>> {
+    let (mut lengths, mut views) = (BTreeMap::new(), BTreeMap::new());
+    let mut pose = trail.start();
+    for (number, senses) in senses.iter().enumerate() {
+        let degree = trail.degree(pose);
+        let seen: Vec<_> = senses.compass.iter().flat_map(|view| view.directions()).collect();
+        if seen.len() == degree as usize {
+            for (door, &direction) in (0..degree).zip(&seen) {
+                let dart = trail.behind(pose, Door(door));
+                if *views.entry(dart).or_insert(direction) != direction {
+                    return None;
+                }
+            }
+        }
+        if let Some(far) = trail.opposite(pose).filter(|_| number > 0) {
+            let length = lengths.entry(pose.max(far)).or_insert(LengthInterval::ANY);
+            *length = length.intersection(senses.length.unwrap())?;
+        }
+        let Some(&door) = doors.get(number) else { break };
+        pose = trail.opposite(trail.behind(pose, door)).unwrap();
+    }
+    Some(lengths)
+}
+
 proptest! {
+    #[test]
+    fn senses_contradict_exactly_if_an_edge_has_two_lengths_or_a_vertex_two_views(
+        graph in any_graph(Class::Multigraph, 6),
+        turns in prop::collection::vec(any::<u8>(), 0..25),
+        length in 1000_u32..1300,
+        shown in prop::collection::vec(any::<bool>(), 26),
+        wrong in prop::option::of((any::<prop::sample::Index>(), 900_u32..1400, 0_u32..4)),
+    ) {
+        let (percepts, doors) = walk_with(Directional, &graph, Dart(0), Dart(0), &turns);
+        let of_visit = shown.iter().map(|&is_shown| (length, is_shown.then_some(0)));
+        let mut measured: Vec<_> = of_visit.take(percepts.len()).collect();
+        if let Some((at, length, turn)) = wrong {
+            measured[at.index(percepts.len())] = (length, Some(turn));
+        }
+        let senses = sensed_on_walk(&graph, &doors, &measured);
+        let sensing = fold_sensing(&percepts, &doors, &senses);
+        let trail = fold(&percepts, &doors).unwrap();
+        let lengths = sensed_of_each(&trail, &doors, &senses);
+        prop_assert_eq!(sensing.is_ok(), lengths.is_some());
+        for (dart, length) in lengths.into_iter().flatten() {
+            let sensing = sensing.as_ref().unwrap();
+            let far = sensing.opposite(dart).unwrap();
+            prop_assert_eq!([dart, far].map(|dart| sensing.length(dart)), [length; 2]);
+        }
+    }
+
     #[test]
     fn the_folded_trail_is_the_smallest_equivalence_of_the_darts_that_the_walk_forces(
         graph in any_graph(Class::Multigraph, 5),
@@ -341,10 +445,15 @@ proptest! {
     fn a_union_is_undone_completely(
         graph in any_graph(Class::Multigraph, 8),
         turns in prop::collection::vec(any::<u8>(), 0..40),
+        shown in prop::collection::vec(any::<bool>(), 41),
         pairs in prop::collection::vec(any::<(prop::sample::Index, prop::sample::Index)>(), 1..6),
     ) {
         let (percepts, doors) = walk_with(Directional, &graph, Dart(0), Dart(0), &turns);
-        let mut trail = fold(&percepts, &doors).unwrap();
+        let lengths = (1000..).step_by(2);
+        let of_visit = lengths.zip(&shown).map(|(length, shown)| (length, shown.then_some(0)));
+        let measured: Vec<_> = of_visit.take(percepts.len()).collect();
+        let senses = sensed_on_walk(&graph, &doors, &measured);
+        let mut trail = fold_sensing(&percepts, &doors, &senses).unwrap();
         let darts: usize = trail.dart_count();
         for (one, other) in pairs {
             let [one, other] = [one, other].map(|index| Dart(index.index(darts) as u32));
@@ -352,9 +461,13 @@ proptest! {
             let united = trail.with_united(one, other, |trail| trail.root_of(one) == trail.root_of(other));
             prop_assert_eq!(&state(&trail, darts), &before);
             prop_assert!(united.unwrap_or(true));
-            // What fails changes nothing.
+            // What fails changes nothing. What was sensed stays true.
             if trail.unite(one, other).is_err() {
                 prop_assert_eq!(&state(&trail, darts), &before);
+            }
+            for (dart, (_, _, length, direction)) in (0..).map(Dart).zip(before.2) {
+                prop_assert_eq!(trail.length(dart).intersection(length), Some(trail.length(dart)));
+                prop_assert_eq!(trail.direction(dart).filter(|_| direction.is_some()), direction);
             }
         }
     }

@@ -1,12 +1,13 @@
 //! The folded trail of a walk: the vertices that the robot has visited, folded as far as is proved.
 
 use super::{
-    ContradictionReason, MAX_DARTS, TrailError,
+    ArrivalSenses, ContradictionReason, LengthInterval, MAX_DARTS, TrailError,
     arrow::{Arrow, Sense},
     classes::{DartClasses, OPEN},
 };
 use crate::{
     clone_in_place::clone_in_place,
+    direction::Direction,
     embedded_graph::Dart,
     injected_flaw::InjectedFlaw,
     percept::{Door, Percept, Sighting},
@@ -106,6 +107,35 @@ impl FoldedTrail {
         self.moves += 1;
         self.pose = self.classes.find(self.classes.turned(self.pose, door.0));
         Ok(self.classes.compare(self.pose, percept, self.moves)?)
+    }
+
+    /// What the robot senses besides its percept where it is: it is compared with what it sensed there and on the edge behind
+    /// it before, and is used in later unions. It is called after the start or a [step](Self::step), or not.
+    ///
+    /// # Errors
+    /// Returns an error if no world of any size explains this. The trail is then of no more use.
+    #[inline]
+    pub fn sense(&mut self, senses: ArrivalSenses) -> Result<(), ContradictionReason> {
+        if senses == ArrivalSenses::default() {
+            return Ok(());
+        }
+        self.classes.sense(self.classes.find(self.pose), senses, self.moves)
+    }
+
+    /// The length of a dart's edge, as far as it was measured.
+    pub fn length(&self, dart: Dart) -> LengthInterval {
+        self.classes.length(self.classes.find(dart.0))
+    }
+
+    /// The direction of a dart, if it was seen with a compass.
+    pub fn direction(&self, dart: Dart) -> Option<Direction> {
+        self.classes.direction(self.classes.find(dart.0))
+    }
+
+    /// Whether what was sensed besides percepts, of two darts alone, allows that they are one.
+    #[inline]
+    pub(crate) fn senses_agree(&self, one: Dart, other: Dart) -> bool {
+        self.classes.senses_agree(one.0, other.0)
     }
 
     /// All sightings of the directional marker are one pose. The robot has come in by the first dart of a new

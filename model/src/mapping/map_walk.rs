@@ -10,8 +10,9 @@ use crate::{
     aid::Aid,
     clone_in_place::clone_in_place,
     embedded_graph::{Dart, MAX_EDGES, Vertex},
+    folding::ArrivalSenses,
     percept::{Door, Percept, Sighting},
-    world::{AidHandler, GraphWorld, World},
+    world::{AidHandler, GraphWorld, SensingWorld, World},
 };
 
 /// The default bound on known darts. A run in a world with more than 8,000 edges, or with infinitely
@@ -51,6 +52,12 @@ pub trait ObservedWorld: World {
 
 impl<A: Aid> ObservedWorld for GraphWorld<'_, A> {}
 
+impl<W: ObservedWorld, S: FnMut(&W) -> ArrivalSenses> ObservedWorld for SensingWorld<W, S> {
+    fn event(&mut self, walk: &MapWalk, event: MappingEvent) {
+        self.world_mut().event(walk, event);
+    }
+}
+
 /// A world with an observer.
 #[derive(Debug)]
 pub struct Observed<'a, W, O> {
@@ -79,6 +86,10 @@ impl<W: World, O: Observer<W>> World for Observed<'_, W, O> {
 
     fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = W::Error>> {
         self.world.handler()
+    }
+
+    fn senses(&mut self) -> ArrivalSenses {
+        self.world.senses()
     }
 }
 

@@ -86,7 +86,8 @@ pub enum FoldingEvent {
     Explored { edge: Dart, percept: Percept },
     /// The robot is going to test a hypothesis. If it is true, the marker is this number of moves away.
     Testing { edge: Dart, hypothesis: Dart, cost: usize },
-    /// The test refuted its hypothesis. The robot goes on from where it is.
+    /// The test refuted its hypothesis. The robot goes on from where it is. If the percepts are equal, it was refuted by what
+    /// the robot [senses](crate::world::World::senses) besides.
     Refuted { edge: Dart, hypothesis: Dart, expected: Percept, perceived: Percept },
     /// The test ended at the marker as expected.
     Confirmed { edge: Dart, hypothesis: Dart },

@@ -10,6 +10,7 @@ use super::{
 };
 use crate::{
     aid::{AidAction, AidKind, string::LaidString},
+    folding::ArrivalSenses,
     percept::{Door, Percept, Sighting, StringView},
     world::World,
 };
@@ -148,6 +149,10 @@ impl<W: ObservedWorld> World for AsMarker<'_, W> {
 
     fn traverse(&mut self, door: Door) -> Result<(), W::Error> {
         self.world.traverse(door)
+    }
+
+    fn senses(&mut self) -> ArrivalSenses {
+        self.world.senses()
     }
 }
 

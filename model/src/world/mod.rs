@@ -1,11 +1,14 @@
 //! The central interface: everything that a robot can sense of its world and do in it. Section 2.1.
 
 mod graph_world;
+mod sensing_world;
 
 pub use graph_world::GraphWorld;
+pub use sensing_world::SensingWorld;
 
 use crate::{
     aid::AidAction,
+    folding::ArrivalSenses,
     percept::{Door, Percept},
 };
 
@@ -31,6 +34,13 @@ pub trait World {
     /// What does the actions beside doors; `None` if the robot has none.
     fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = Self::Error>> {
         None
+    }
+
+    /// What the robot senses besides its percept; by default nothing, as in the paper. The folding explorer asks once after
+    /// each percept. No other explorer uses it.
+    #[inline]
+    fn senses(&mut self) -> ArrivalSenses {
+        ArrivalSenses::default()
     }
 }
 

@@ -5,6 +5,9 @@
 //! the map. A *hypothesis* is that a pending place is entered by a certain unexplored dart. It is alive
 //! as long as the trail with the two poses united does not contradict itself.
 //!
+//! If the robot [senses](crate::world::World::senses) more than its percepts, a hypothesis also contradicts itself where lengths or
+//! directions differ, and a test ends there. All choices are the same.
+//!
 //! Of open darts and pending places equally near, the one of the lowest dart of the map comes first; of tests of equal
 //! cost, the one whose hypothesis is nearest to the marker, then with the nearest open dart, then with the lowest
 //! hypothesis, then with the open dart that was seen first. No [`InjectedFlaw`] is present outside of tests.
@@ -137,6 +140,7 @@ impl FoldingRun {
         }
         self.walk.begin(percept, world)?;
         self.trail.restart(percept)?;
+        self.sense(world)?;
         self.put_in_map(self.trail.pose());
         self.settle(world)
     }

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     aid::Aid,
     embedded_graph::Dart,
-    folding::FoldedTrail,
+    folding::{ArrivalSenses, FoldedTrail},
     mapping::{
         Contradiction, Explorer, FACING, InvalidStep, MapWalk, Mapped, MappingError, MappingEvent,
         ObservedWorld, SafeguardEvent,
@@ -114,6 +114,10 @@ impl<W: Relocate> World for Remembering<'_, W> {
         self.moves += 1;
         self.walk.leave(door);
         Ok(())
+    }
+
+    fn senses(&mut self) -> ArrivalSenses {
+        self.world.senses()
     }
 }
 

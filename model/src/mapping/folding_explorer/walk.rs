@@ -33,7 +33,9 @@ impl FoldingRun {
         let mut believed = entry;
         loop {
             let expected = self.map().expected(believed);
-            if perceived != expected {
+            let pose = self.trail.pose();
+            if perceived != expected || !self.trail.senses_agree(pose, self.in_trail[believed.at()])
+            {
                 self.hypotheses.refute(edge, hypothesis);
                 let event = FoldingEvent::Refuted { edge, hypothesis, expected, perceived };
                 self.report(event, world);
@@ -96,8 +98,14 @@ impl FoldingRun {
                 TrailError::TooManyDarts => MappingError::from(error),
             });
         }
+        self.sense(world)?;
         self.find_robot();
         Ok(percept)
+    }
+
+    /// Compares what the robot senses besides its percept. No percept is then the one that is false.
+    pub(super) fn sense<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        Ok(self.trail.sense(world.senses()).map_err(TrailError::from)?)
     }
 
     /// Reports that the trail has fewer vertices, if it has: the robot has seen the marker.
