@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use toposlam_model::{
-    aid::{AIDS, Action, Aid, AidAction, AidKind, RefusedAction, State, named},
+    aid::{AIDS, Action, Aid, AidAction, AidKind, RefusedAction, State, named, string::LaidString},
     ambiguity::{AmbiguitySearch, Comparison},
-    embedded_graph::{Dart, EmbeddedGraph},
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Class,
+    mapping::{MapWalk, MappingAlgorithm, MappingEvent, Observer},
     marker::{Directional, Marker},
     percept::{Door, OtherRobot, Percept, Sighting, TeamView},
     world::GraphWorld,
@@ -295,7 +296,7 @@ fn what_a_robot_sees_is_of_its_aid_and_is_read_as_it_is_written() {
 fn after_each_action<'g>(world: &AidWorld<'g>) -> Vec<AidWorld<'g>> {
     let acted = |action| {
         let mut world = world.clone();
-        world.act(action).map(|_| world).unwrap()
+        world.act(action).map(|()| world).unwrap()
     };
     world.actions().into_iter().map(acted).collect()
 }
@@ -303,4 +304,38 @@ fn after_each_action<'g>(world: &AidWorld<'g>) -> Vec<AidWorld<'g>> {
 /// Two edges between two vertices.
 fn dipole() -> EmbeddedGraph {
     EmbeddedGraph::from_edge_lists(&[("a", vec!["e", "f"]), ("b", vec!["e", "f"])]).unwrap()
+}
+
+/// With a string as long as it takes, a directional marker beside it tells a robot nothing: wherever it would see the marker, it
+/// has come along the string, or sees the fixed end and the one dart along which the string leaves it.
+#[test]
+fn beside_a_string_a_marker_at_its_fixed_end_tells_nothing() {
+    struct AtStart {
+        start: Vertex,
+        others: u32,
+    }
+    impl Observer<AidWorld<'_>> for AtStart {
+        fn event(&mut self, world: &mut AidWorld<'_>, _: &MapWalk, event: MappingEvent) {
+            let is_here = world.graph().vertex(world.pose()) == self.start;
+            if !is_here || !matches!(event, MappingEvent::Moved { .. }) {
+                return;
+            }
+            let Sighting::String(view) = world.sensed().sighting else { panic!("no string") };
+            assert!(view.fixed_end);
+            let laid: Vec<_> = view.doors.doors().filter(|door| Some(*door) != view.hand).collect();
+            assert!(laid.len() <= 1, "{view}");
+            // Otherwise it has wound the string in, all of it, and so knows where it is.
+            let has_wound_in = view.hand.is_none() && laid.is_empty();
+            self.others += u32::from(!has_wound_in);
+        }
+    }
+    let string = MappingAlgorithm::String(LaidString::of_any_length());
+    let mut others = 0;
+    for graph in (1..=4).flat_map(|edges| starts(Class::Multigraph, edges)) {
+        let mut world = GraphWorld::with_aid(&graph, string.aid(), Dart(0));
+        let mut observer = AtStart { start: graph.vertex(Dart(0)), others: 0 };
+        string.map_world(&mut world, 20, &mut observer).1.unwrap();
+        others += observer.others;
+    }
+    assert!(others > 100, "{others}");
 }

@@ -128,7 +128,9 @@ mod tests {
                     "of a string something is seen",
                     |(list, [fixed_end, free_end], hand)| {
                         let mut doors = DoorSet::default();
-                        list.iter().for_each(|door| doors.insert(*door));
+                        for door in list {
+                            doors.insert(door);
+                        }
                         let view = StringView { doors, fixed_end, free_end, hand };
                         (view != StringView::default()).then_some(Sighting::String(view))
                     },
