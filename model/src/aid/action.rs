@@ -120,7 +120,8 @@ impl<'de> Deserialize<'de> for Action {
 
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "`{0}` is not an action; write a door number, pick-up, drop, pick-up-2, drop-2 or send-2:1"
+    "`{}` is not an action; write a door number, pick-up, drop, pick-up-2, drop-2 or send-2:1",
+    .0.escape_debug()
 )]
 pub struct UnknownAction(String);
 

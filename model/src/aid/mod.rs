@@ -530,7 +530,7 @@ dispatched!(AidKind, with_aid);
 dispatched!(AnyAid<'_>, with_any_aid);
 
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{0}` is not a marking aid; they are {names}", names = AIDS.map(AidKind::name).join(", "))]
+#[error("`{name}` is not a marking aid; they are {names}", name = .0.escape_debug(), names = AIDS.map(AidKind::name).join(", "))]
 pub struct UnknownAid(String);
 
 /// The marking aid with this name.

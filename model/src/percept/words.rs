@@ -8,8 +8,9 @@ use super::{Door, MARKER_NAMES, MarkerSet, OtherRobot, Sighting, StringView, Tea
 
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "`{0}` is not what a robot sees of a marking aid; that is written as in `marker along door 1`, `2 markers`, \
-     `first marker`, `string through door 0, fixed end` or `robot 2 here along door 1`"
+    "`{}` is not what a robot sees of a marking aid; that is written as in `marker along door 1`, `2 markers`, \
+     `first marker`, `string through door 0, fixed end` or `robot 2 here along door 1`",
+    .0.escape_debug()
 )]
 pub struct UnknownSighting(String);
 
