@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use toposlam_model::{
     aid::{AIDS, Action, Aid, AidAction, AidKind, RefusedAction, State, named, string::LaidString},
-    ambiguity::{AmbiguitySearch, Comparison},
+    ambiguity::{AmbiguitySearch, Comparison, shortest_certificate},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Class,
     mapping::{MapWalk, MappingAlgorithm, MappingEvent, Observer},
@@ -13,7 +13,7 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
-use crate::{markers::junction, starts};
+use crate::{markers::junction, starts, text_of};
 
 type AidWorld<'g> = GraphWorld<'g, AidKind>;
 
@@ -338,4 +338,36 @@ fn beside_a_string_a_marker_at_its_fixed_end_tells_nothing() {
         others += observer.others;
     }
     assert!(others > 100, "{others}");
+}
+
+/// The table of the page on marking aids, up to 4 edges.
+#[test]
+fn the_certificates_and_the_moves_of_simple_worlds_are_those_that_are_published() {
+    let page = text_of("docs/aids.md");
+    let (_, table) = page.split_once("## Certificates with each aid").unwrap();
+    for algorithm in MappingAlgorithm::all() {
+        let aid = algorithm.aid();
+        let name = match algorithm {
+            MappingAlgorithm::Algorithm1 => "Algorithm 1".to_owned(),
+            MappingAlgorithm::Folding => "folding".to_owned(),
+            _ => format!("`{}`", aid.name()),
+        };
+        let is_its =
+            |line: &&str| line.split(" | ").next().is_some_and(|cell| cell.contains(&name));
+        let row = table.lines().filter(|line| line.starts_with("| ")).find(is_its).unwrap();
+        let cells: Vec<_> = row.split(" | ").skip(1).map(str::to_owned).collect();
+        let sums = [3, 4].map(|edges| {
+            let (mut least, mut explored) = (0, 0);
+            for graph in starts(Class::Simple, edges) {
+                let found = shortest_certificate(aid, (&graph, Dart(0)), 200_000).unwrap();
+                least += found.into_iter().map(Action::moves).sum::<u64>();
+                let mut world = GraphWorld::with_aid(&graph, aid, Dart(0));
+                let (run, map) = algorithm.map_world(&mut world, 20, &mut ());
+                map.unwrap();
+                explored += run.moves();
+            }
+            format!("{least} / {explored}")
+        });
+        assert_eq!(cells[..2], sums, "{name}");
+    }
 }

@@ -66,19 +66,13 @@ impl Beginning {
     }
 
     /// Every end of an open dart: at a new place of this degree, or at another open dart of one.
-    fn ends(&self, dart: u32, degree: u32, is_simple: bool) -> Vec<Self> {
+    fn ends(&self, dart: u32, degree: u32) -> Vec<Self> {
         let mut ends = Vec::new();
         let place_of = |dart: u32| self.places[dart as usize];
-        let joined = |other: u32| {
-            let pairs = self.places.iter().zip(&self.opposite);
-            let mut pairs = pairs.filter(|(_, far)| **far != OPEN);
-            pairs.any(|(place, far)| *place == place_of(dart) && place_of(*far) == place_of(other))
-        };
         for other in (0..self.opposite.len() as u32).filter(|other| *other != dart) {
             let is_open = self.opposite[other as usize] == OPEN;
             let fits = || self.places.iter().filter(|place| **place == place_of(other)).count();
-            let is_loop = place_of(other) == place_of(dart);
-            if is_open && fits() == degree as usize && !(is_simple && (is_loop || joined(other))) {
+            if is_open && fits() == degree as usize {
                 let mut end = self.clone();
                 (end.opposite[dart as usize], end.opposite[other as usize]) = (other, dart);
                 ends.push(end);
@@ -95,12 +89,10 @@ impl Beginning {
     }
 
     /// Every way in which an action can lead to a place of this degree.
-    fn explanations(&self, action: Action, degree: Option<u32>, is_simple: bool) -> Vec<Self> {
+    fn explanations(&self, action: Action, degree: Option<u32>) -> Vec<Self> {
         let by = self.graph().and_then(|graph| moved_by(action, &graph, &self.state));
         match (by, degree) {
-            (Some(by), Some(degree)) if self.opposite[by.at()] == OPEN => {
-                self.ends(by.0, degree, is_simple)
-            }
+            (Some(by), Some(degree)) if self.opposite[by.at()] == OPEN => self.ends(by.0, degree),
             _ => vec![self.clone()],
         }
     }
@@ -142,13 +134,7 @@ impl Knowledge {
     }
 
     /// After an action that is possible in the world.
-    fn after(
-        &self,
-        aid: AidKind,
-        graph: &EmbeddedGraph,
-        action: Action,
-        is_simple: bool,
-    ) -> Option<Self> {
+    fn after(&self, aid: AidKind, graph: &EmbeddedGraph, action: Action) -> Option<Self> {
         let mut world = GraphWorld::in_state(graph, aid, self.state.clone());
         let by = moved_by(action, graph, &self.state);
         let degree = by.map(|by| graph.degree_around(graph.opposite(by)));
@@ -157,7 +143,7 @@ impl Knowledge {
         let mut beginnings: Vec<_> = self
             .beginnings
             .iter()
-            .flat_map(|beginning| beginning.explanations(action, degree, is_simple))
+            .flat_map(|beginning| beginning.explanations(action, degree))
             .filter_map(|beginning| beginning.after(aid, action, seen))
             .collect();
         beginnings.sort_unstable();
@@ -172,13 +158,11 @@ impl Knowledge {
     }
 }
 
-/// Actions with the fewest moves after which a robot with this aid knows its world, among all worlds of any size, or all
-/// without loops and parallel edges; `None` if `most` states of knowledge do not suffice to find them. A
-/// fixed marker must lie at the start vertex.
+/// Actions with the fewest moves after which a robot with this aid knows its world, among all worlds of any size; `None` if
+/// `most` states of knowledge do not suffice to find them. A fixed marker must lie at the start vertex.
 pub fn shortest_certificate(
     aid: AidKind,
     (graph, facing): (&EmbeddedGraph, Dart),
-    is_simple: bool,
     most: usize,
 ) -> Option<Vec<Action>> {
     let start = Beginning::of_start(aid, graph.degree_around(facing))?;
@@ -202,7 +186,7 @@ pub fn shortest_certificate(
         known.insert(knowledge.clone());
         let world = GraphWorld::in_state(graph, aid, knowledge.state.clone());
         for action in world.actions() {
-            let Some(next) = knowledge.after(aid, graph, action, is_simple) else { continue };
+            let Some(next) = knowledge.after(aid, graph, action) else { continue };
             if known.contains(&next) {
                 continue;
             }
@@ -232,8 +216,8 @@ mod tests {
         Enumeration::new(Each::Start, class, edges).unwrap().graphs().collect()
     }
 
-    fn moves(aid: AidKind, graph: &EmbeddedGraph, is_simple: bool) -> Option<u64> {
-        let found = shortest_certificate(aid, (graph, Dart(0)), is_simple, 50_000)?;
+    fn moves(aid: AidKind, graph: &EmbeddedGraph) -> Option<u64> {
+        let found = shortest_certificate(aid, (graph, Dart(0)), 50_000)?;
         Some(found.into_iter().map(Action::moves).sum())
     }
 
@@ -242,7 +226,7 @@ mod tests {
         let multigraphs = (1..=3).flat_map(|edges| starts(Class::Multigraph, edges));
         let simple = (4..=5).flat_map(|edges| starts(Class::Simple, edges));
         for graph in multigraphs.chain(simple) {
-            let found = moves(Directional.into(), &graph, false);
+            let found = moves(Directional.into(), &graph);
             assert_eq!(found, Some(certificate_length(&graph, Dart(0)) as u64), "{graph:?}");
         }
     }
@@ -257,7 +241,7 @@ mod tests {
                 let mut world = GraphWorld::with_aid(graph, aid, Dart(0));
                 let (run, map) = algorithm.map_world(&mut world, 20, &mut ());
                 map.unwrap();
-                let least = moves(aid, graph, true).expect("few states");
+                let least = moves(aid, graph).expect("few states");
                 assert!(least <= run.moves(), "{} in {graph:?}", aid.name());
                 // Two copies of the world that cross at an edge which nobody goes through look the same.
                 assert!(least >= graph.edge_count() as u64, "{} in {graph:?}", aid.name());
@@ -270,11 +254,11 @@ mod tests {
         for edges in 3..=6 {
             let ring = EmbeddedGraph::cycle(edges);
             for aid in [Directional.into(), AidKind::String(LaidString::of_any_length())] {
-                assert_eq!(moves(aid, &ring, false), Some(edges as u64), "{}", aid.name());
+                assert_eq!(moves(aid, &ring), Some(edges as u64), "{}", aid.name());
             }
             // Two robots go both ways round, until one of them comes to the other.
-            assert_eq!(moves(named("team-2").unwrap(), &ring, false), Some(edges as u64));
+            assert_eq!(moves(named("team-2").unwrap(), &ring), Some(edges as u64));
         }
-        assert_eq!(moves(named("none").unwrap(), &EmbeddedGraph::cycle(3), true), None);
+        assert_eq!(moves(named("none").unwrap(), &EmbeddedGraph::cycle(3)), None);
     }
 }
