@@ -306,10 +306,10 @@ fn dipole() -> EmbeddedGraph {
     EmbeddedGraph::from_edge_lists(&[("a", vec!["e", "f"]), ("b", vec!["e", "f"])]).unwrap()
 }
 
-/// With a string as long as it takes, a directional marker beside it tells a robot nothing: wherever it would see the marker, it
-/// has come along the string, or sees the fixed end and the one dart along which the string leaves it.
+/// With a string as long as it takes, a directional marker adds nothing: at the start vertex the robot has come back along the
+/// string, or sees the fixed end and the one dart along which the string runs.
 #[test]
-fn beside_a_string_a_marker_at_its_fixed_end_tells_nothing() {
+fn with_a_string_a_directional_marker_adds_nothing() {
     struct AtStart {
         start: Vertex,
         others: u32,

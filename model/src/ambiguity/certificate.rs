@@ -11,6 +11,7 @@ use std::collections::{HashSet, VecDeque};
 use crate::{
     aid::{Action, Aid, AidAction, AidKind, Places, State},
     embedded_graph::{Dart, EmbeddedGraph},
+    marker::{TwoDistinct, TwoIdentical},
     percept::Percept,
     world::GraphWorld,
 };
@@ -159,12 +160,16 @@ impl Knowledge {
 }
 
 /// Actions with the fewest moves after which a robot with this aid knows its world, among all worlds of any size; `None` if
-/// `most` states of knowledge do not suffice to find them. A fixed marker must lie at the start vertex.
+/// `most` states of knowledge do not suffice to find them. It is not known, and `None`, too, for what shows more than the
+/// places where robots were: markers at both ends of an edge, and binoculars.
 pub fn shortest_certificate(
     aid: AidKind,
     (graph, facing): (&EmbeddedGraph, Dart),
     most: usize,
 ) -> Option<Vec<Action>> {
+    if matches!(aid, AidKind::Fixed(TwoIdentical | TwoDistinct) | AidKind::Binoculars(_)) {
+        return None;
+    }
     let start = Beginning::of_start(aid, graph.degree_around(facing))?;
     let state = State { pose: facing, placed: aid.placed(graph, facing) };
     let explored = vec![false; graph.dart_count()];
@@ -205,7 +210,7 @@ pub fn shortest_certificate(
 mod tests {
     use super::*;
     use crate::{
-        aid::{named, string::LaidString},
+        aid::{AIDS, named, string::LaidString},
         enumerate::{Class, Each, Enumeration},
         folding::certificate_length,
         mapping::MappingAlgorithm,
@@ -246,6 +251,16 @@ mod tests {
                 // Two copies of the world that cross at an edge which nobody goes through look the same.
                 assert!(least >= graph.edge_count() as u64, "{} in {graph:?}", aid.name());
             }
+        }
+    }
+
+    #[test]
+    fn of_what_shows_unknown_places_no_certificate_is_known() {
+        for aid in AIDS {
+            let shows_more = ["two-identical", "two-distinct", "binoculars-1", "binoculars-2"]
+                .contains(&aid.name());
+            let found = moves(aid, &EmbeddedGraph::cycle(3));
+            assert_eq!(found.is_some(), !shows_more && aid != named("none").unwrap(), "{aid:?}");
         }
     }
 
