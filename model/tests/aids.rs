@@ -288,6 +288,14 @@ fn what_a_robot_sees_is_of_its_aid_and_is_read_as_it_is_written() {
         ("undirected-edge", "past the mark, along its arrow"),
         ("string-1", "robot 2 here"),
         ("team-2", "fixed end"),
+        ("undirected", "2 markers"),
+        ("movable", "2 markers"),
+        ("two-distinct", "third marker"),
+        ("movable-3-distinct", "fourth marker"),
+        ("team-3", "robot 2 here along door 0"),
+        ("team-2", "robot 2 elsewhere at 2 doors, robot 3 elsewhere at 2 doors"),
+        ("team-2", "robot 2 here"),
+        ("team-2-round", "robot 2 here along door 0"),
     ] {
         assert!(!named(aid).unwrap().shows(sighting.parse().unwrap()), "{aid}: {sighting}");
     }

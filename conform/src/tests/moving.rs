@@ -229,6 +229,7 @@ fn what_is_seen_of_another_aid_is_an_error() {
         ("team-2", "movable", "robot 2 here along door 0"),
         ("movable-2-distinct", "movable-2", "first and second marker"),
         ("string-1", "team-2", "fixed end"),
+        ("team-2", "team-3", "robot 2 here along door 0"),
     ] {
         let algorithm = moving().find(|it| it.aid().name() == recorded_aid).unwrap();
         let events = recorded(algorithm, &graph, Dart(0));

@@ -352,20 +352,24 @@ impl AidKind {
         match sighting {
             Sighting::Nothing => true,
             Sighting::Pointing(_) => matches!(self, Self::Fixed(Directional) | Self::Pointer(_)),
-            Sighting::Lying(_) => match self {
-                Self::Fixed(marker) => [Undirected, TwoIdentical].contains(&marker),
-                Self::Markers(markers) => markers.are_alike(),
+            Sighting::Lying(count) => match self {
+                Self::Fixed(Undirected) => count == 1,
+                Self::Fixed(TwoIdentical) => count <= 2,
+                Self::Markers(markers) => markers.are_alike() && count <= markers.count().into(),
                 _ => false,
             },
-            Sighting::These(_) => match self {
-                Self::Fixed(marker) => marker == TwoDistinct,
-                Self::Markers(markers) => !markers.are_alike(),
-                _ => false,
-            },
+            Sighting::These(set) => {
+                let count = match self {
+                    Self::Fixed(TwoDistinct) => 2,
+                    Self::Markers(markers) if !markers.are_alike() => markers.count(),
+                    _ => 0,
+                };
+                set.numbers().all(|number| number < count.into())
+            }
             Sighting::Passed => self == Self::Fixed(UndirectedEdge),
             Sighting::PassedAlong | Sighting::PassedAgainst => self == Self::Fixed(DirectedEdge),
             Sighting::String(_) => matches!(self, Self::String(_)),
-            Sighting::Team(_) => matches!(self, Self::Team(_)),
+            Sighting::Team(view) => matches!(self, Self::Team(team) if team.shows(view)),
             Sighting::Ball(_) => matches!(self, Self::Binoculars(_)),
             Sighting::Compass(_) => false,
         }

@@ -37,6 +37,17 @@ impl Team {
         self.shows_heading
     }
 
+    /// Whether so many robots can be seen so.
+    pub(super) fn shows(self, view: TeamView) -> bool {
+        let others = view.0.iter().take_while(|other| **other != OtherRobot::Absent).count();
+        let is_shown = |other: &OtherRobot| match other {
+            OtherRobot::Absent | OtherRobot::Elsewhere { .. } => true,
+            OtherRobot::Here | OtherRobot::WithSecond => !self.shows_heading,
+            OtherRobot::HereAlong(_) | OtherRobot::WithSecondAlong(_) => self.shows_heading,
+        };
+        others + 1 == usize::from(self.robots) && view.0.iter().all(is_shown)
+    }
+
     /// The door along which a robot stands, as another one at its vertex counts, if that is shown.
     fn along(self, graph: &EmbeddedGraph, from: Dart, other: Dart) -> Option<Door> {
         let (from, to) = (graph.index(from), graph.index(other));
