@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use super::{Contradiction, FoldedWalk, Step, Walk, WalkEnd, fold_walk};
 use crate::{
-    aid::{Action, AidAction},
-    ambiguity::Comparison,
+    aid::AidAction,
+    ambiguity::{self, Comparison},
     counts::counted,
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::isomorphism,
@@ -41,6 +41,13 @@ pub struct WalkPair {
     pub doors: Vec<Door>,
 }
 
+impl WalkPair {
+    /// A walk of a robot with a fixed marker, which takes nothing but doors.
+    pub fn new(from: [Dart; 2], walk: &ambiguity::Walk) -> Self {
+        Self { from, doors: walk.actions.iter().filter_map(|action| action.door()).collect() }
+    }
+}
+
 /// Why there is no proof.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotProved {
@@ -52,8 +59,20 @@ pub enum NotProved {
     Lost,
     #[error("nothing was perceived")]
     NoPercept,
+    #[error("only a directional marker shows that a walk determines its world")]
+    OtherMarker,
     #[error("the walk does not determine its world: {} never followed", counted_doors(*.0))]
     Open(usize),
+    #[error("proofs are about fixed markers, and not about `{0}`")]
+    Aid(&'static str),
+    #[error("several percepts are possible at some visits")]
+    Possible,
+    #[error("the map is not complete")]
+    NoMap,
+    #[error("the map does not give this walk")]
+    NotInMap,
+    #[error("no world was found that gives this walk")]
+    NoWorldFound,
     #[error("no world gives this walk")]
     Impossible,
 }
@@ -76,17 +95,25 @@ impl Claim {
         }
     }
 
-    /// That a walk from this pose determines its world, with a directional marker.
+    /// That a walk from this pose determines its world, which needs a directional marker.
     ///
     /// # Errors
     /// Returns an error if it does not.
-    pub fn determined(walk: &Walk, from: Dart) -> Result<Self, NotProved> {
-        let FoldedWalk { steps, end } = fold_walk(walk, Directional);
+    pub fn determined(walk: &Walk, marker: MarkerKind, from: Dart) -> Result<Self, NotProved> {
+        let FoldedWalk { steps, end } = fold_walk(walk, marker);
         match end {
-            WalkEnd::Complete => Ok(Self::Determined { from, steps }),
+            WalkEnd::Complete if marker == Directional => Ok(Self::Determined { from, steps }),
+            WalkEnd::Complete => Err(NotProved::OtherMarker),
             WalkEnd::Open(doors) => Err(NotProved::Open(doors)),
             WalkEnd::Contradiction { .. } => Err(NotProved::Impossible),
         }
+    }
+
+    /// That no walk from these poses distinguishes two worlds, which have fixed markers.
+    pub fn indistinguishable(comparison: &Comparison<'_>, poses: [Dart; 2]) -> Self {
+        let relation = comparison.relation(poses).map_or_else(Vec::new, |relation| relation.0);
+        let pairs = relation.into_iter().map(|(one, other)| [one.pose, other.pose]).collect();
+        Self::Indistinguishable { pairs }
     }
 
     /// Whether two worlds are isomorphic.
@@ -98,29 +125,19 @@ impl Claim {
         let walk_to = |dart| {
             let comparison = Comparison::new(Directional, (one, first), (other, dart));
             let walk = comparison.walk([first, dart]);
-            let doors = walk.map(|walk| doors_of(&walk.actions)).unwrap_or_default();
-            WalkPair { from: [first, dart], doors }
+            walk.map(|walk| WalkPair::new([first, dart], &walk))
         };
-        Self::NotIsomorphic { walks: other.darts().map(walk_to).collect() }
+        Self::NotIsomorphic { walks: other.darts().filter_map(walk_to).collect() }
     }
-}
-
-/// The doors of a walk with a fixed marker, which takes nothing but doors.
-fn doors_of(actions: &[Action]) -> Vec<Door> {
-    let door = |action: &Action| match action {
-        Action::Take(door) => Some(*door),
-        Action::Do(_) => None,
-    };
-    actions.iter().filter_map(door).collect()
 }
 
 /// Whether a walk with this marker has a contradiction in each world, as far as its folding shows: the claim, and the
 /// walk up to there.
-pub fn unexplained(walk: Walk, marker: MarkerKind) -> Option<(Walk, Claim)> {
-    let FoldedWalk { steps, end } = fold_walk(&walk, marker);
+pub fn unexplained(walk: &Walk, marker: MarkerKind) -> Option<(Walk, Claim)> {
+    let FoldedWalk { steps, end } = fold_walk(walk, marker);
     match end {
         WalkEnd::Contradiction { visit, contradiction } => {
-            Some((walk.up_to(visit), Claim::Unexplained { steps, contradiction }))
+            Some((walk.clone().up_to(visit), Claim::Unexplained { steps, contradiction }))
         }
         WalkEnd::Complete | WalkEnd::Open(_) => None,
     }

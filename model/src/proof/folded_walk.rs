@@ -210,7 +210,8 @@ impl Folding<'_> {
         one: (usize, Door),
         other: (usize, Door),
     ) -> Result<(), Contradiction> {
-        let [(mut root, mut to), (mut child, mut from)] = [one, other].map(|dart| self.locate(dart));
+        let [(mut root, mut to), (mut child, mut from)] =
+            [one, other].map(|dart| self.locate(dart));
         if root == child {
             return if to == from { Ok(()) } else { Err(Contradiction::Step(step)) };
         }

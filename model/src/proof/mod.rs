@@ -12,7 +12,7 @@ pub use walk::{Walk, WalkRecorder};
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    marker::{Directional, MarkerKind},
+    marker::{Directional, MarkerKind, NoMarker},
 };
 
 /// Claims about the same worlds and the same walk, each with its steps. It is written by its
@@ -27,13 +27,22 @@ pub struct Proof<'g> {
 }
 
 impl<'g> Proof<'g> {
+    /// A claim about two embedded graphs, whose markers do not matter.
+    pub fn of_graphs(graphs: [&'g EmbeddedGraph; 2], claim: Claim) -> Self {
+        let worlds = graphs.map(|graph| (graph, Dart(0))).to_vec();
+        Self { worlds, marker: NoMarker, walk: None, claims: vec![claim] }
+    }
+
     /// That this is the map of the only world that gives a walk. The robot began at the marker, with the pose of the facing
     /// dart.
     ///
     /// # Errors
     /// Returns an error if the walk does not determine its world.
     pub fn of_map(map: &'g EmbeddedGraph, facing: Dart, walk: Walk) -> Result<Self, NotProved> {
-        let claim = Claim::determined(&walk, facing)?;
+        if walk.first_difference((map, facing), Directional, facing).is_some() {
+            return Err(NotProved::NotInMap);
+        }
+        let claim = Claim::determined(&walk, Directional, facing)?;
         let worlds = vec![(map, facing)];
         Ok(Self { worlds, marker: Directional, walk: Some(walk), claims: vec![claim] })
     }

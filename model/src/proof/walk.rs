@@ -55,6 +55,22 @@ impl Walk {
         walk
     }
 
+    /// The first visit with another percept than in a world, or to which no door leads there; `None` if the walk is one in
+    /// this world.
+    pub fn first_difference(
+        &self,
+        start: (&EmbeddedGraph, Dart),
+        marker: MarkerKind,
+        from: Dart,
+    ) -> Option<usize> {
+        let there = Self::in_world(start, marker, from, &self.doors);
+        let differs = |(one, other)| one != other;
+        let first = self.percepts.iter().zip(&there.percepts).position(differs);
+        first.or_else(|| {
+            (there.percepts.len() < self.percepts.len()).then_some(there.percepts.len())
+        })
+    }
+
     pub fn percepts(&self) -> &[Percept] {
         &self.percepts
     }
