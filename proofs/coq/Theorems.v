@@ -10,7 +10,7 @@ From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
   Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect GivenActionsCorrect CertificateNeeded
   CertificateAttained AidIsomorphisms AidsAtVertices Imitation Fronts Strings
-  HeldMarkers RoundTeams.
+  HeldMarkers RoundTeams Plane Deeds.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Figures(corridor_a, corridor_b, planar_a, planar_b).
@@ -18,6 +18,8 @@ Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, p
 Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
 Import MovableMarker(handling_action, handling, can_handle, movable).
+Import Plane(in_the_plane).
+Import Deeds(deeds_of, decides, leaves, handles, chooses).
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -426,15 +428,16 @@ split=> //; [exact: Figures.corridor_simple | exact: Figures.corridor_degree |].
 exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
-(** Nor does it in worlds without loops and parallel edges in the plane, by two such worlds with 8 edges. That they
-    are in the plane is not stated. Paper: beyond 2.2. *)
+(** Nor does it in worlds without loops and parallel edges in the plane, by two such worlds with 8 edges. Paper: beyond
+    2.2. *)
 Theorem undirected_planar_impossible (robot : strategy embedded_graph) :
-  [/\ simple planar_a, simple planar_b, ~ isomorphic planar_a planar_b,
-      bisimilar (moving undirected) planar_a planar_b
+  [/\ simple planar_a /\ simple planar_b, in_the_plane planar_a /\ in_the_plane planar_b,
+      ~ isomorphic planar_a planar_b, bisimilar (moving undirected) planar_a planar_b
     & ~ (maps (moving undirected) robot planar_a /\ maps (moving undirected) robot planar_b)].
 Proof.
-have [simple_a simple_b] := Figures.planar_simple; have same := Figures.planar_bisimilar.
-have differ := Figures.planar_not_isomorphic; split=> //; exact: Impossible.bisimilar_impossible same differ robot.
+have same := Figures.planar_bisimilar; have differ := Figures.planar_not_isomorphic.
+split=> //; [exact: Figures.planar_simple | exact: Plane.planar_in_the_plane |].
+exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
 (** A mark on an edge does not suffice, not even in worlds without loops and parallel edges: two such worlds
@@ -984,3 +987,20 @@ Theorem one_false_percept :
   [/\ complete [:: 0] (sees chain_2 [:: 0]), ~ isomorphic chain_2 chain_3
     & false_percepts (sees chain_3 [:: 0]) (sees chain_2 [:: 0]) = 1].
 Proof. exact: Tours.one_false_percept. Qed.
+
+(** * What is extracted *)
+
+(** A robot that does what is extracted from a program, with the default choices, takes the decisions of the robot that obeys
+    the program: one that only moves, and one with a movable marker. *)
+Theorem extracted_obeys A :
+  (forall (p : Program.program A) (past : seq percept),
+     decides id 0 0 (deeds_of (@leaves A) p) past = obey p past) /\
+  (forall (p : program_of handling_action A) (past : seq percept),
+     decides MovableMarker.LeaveBy MovableMarker.PickUp MovableMarker.Drop (deeds_of (@handles A) p) past = obey p past).
+Proof. by split; [apply: Deeds.decides_moves | apply: Deeds.decides_handles]. Qed.
+
+(** And whichever of the listed options it chooses by its number, it is an allowed one. *)
+Theorem extracted_choices A (T : eqType) (xs : seq T) (default : T) (go : T -> Deeds.deeds A) (n i : nat) next :
+  xs != [::] -> chooses (among xs) default go = Deeds.Chooses n next -> i < n ->
+  exists2 x, allows (among xs) x & next (Some i) = go x.
+Proof. exact: Deeds.chooses_listed. Qed.
