@@ -4,13 +4,15 @@
 use std::collections::BTreeMap;
 
 use toposlam_model::{
+    aid::State,
     embedded_graph::{Dart, EmbeddedGraph},
     folding::SmallestWorld,
     marker::MarkerKind,
-    proof::{Claim, NotProved, Proof, Walk, unexplained},
+    proof::{Claim, NotProved, Proof, Seen, Walk, unexplained},
+    visits::{VisitSet, choice_in_world},
 };
 
-use super::{check::CheckedLog, known_world::KnownWorld};
+use super::{check::CheckedLog, known_world::KnownWorld, possible_visits::VisitFit};
 
 impl CheckedLog {
     /// The proofs of what the recorded percepts and doors show. In a known world: that they are a walk in it, or from none of
@@ -21,8 +23,12 @@ impl CheckedLog {
     pub fn proofs(&self) -> Result<Vec<Proof<'_>>, NotProved> {
         let judgement = &self.judgement;
         let marker = self.config.aid.fixed().ok_or(NotProved::Aid(self.config.aid.name()))?;
-        if judgement.possible.as_ref().is_some_and(|possible| possible.certain < possible.visits) {
-            return Err(NotProved::Possible);
+        if let Some(possible) = &judgement.possible {
+            let known = self.config.world.as_ref().ok_or(NotProved::Possible)?;
+            if possible.fit == VisitFit::UnseenWay {
+                return Err(NotProved::UnseenWay);
+            }
+            return Ok(of_visits(known, marker, &possible.sets));
         }
         let trace = &judgement.trace;
         if judgement.lost.is_some() || !trace.relocations().is_empty() {
@@ -33,8 +39,8 @@ impl CheckedLog {
             return Ok(in_known_world(known, marker, walk));
         }
         if let Some((walk, claim)) = unexplained(&walk, marker) {
-            let walk = Some(walk);
-            return Ok(vec![Proof { worlds: Vec::new(), marker, walk, claims: vec![claim] }]);
+            let seen = Some(Seen::Walk(walk));
+            return Ok(vec![Proof { worlds: Vec::new(), marker, seen, claims: vec![claim] }]);
         }
         let Some(SmallestWorld::World { graph, marker: place, .. }) = &judgement.smallest else {
             return Err(NotProved::NoWorldFound);
@@ -43,18 +49,44 @@ impl CheckedLog {
     }
 }
 
-/// That a walk is one in a known world, or a proof for each place of the marker that it is not.
-fn in_known_world(known: &KnownWorld, marker: MarkerKind, walk: Walk) -> Vec<Proof<'_>> {
-    let graph = &known.graph;
+/// The possible poses at the start, by the place of the marker.
+fn starts_of(known: &KnownWorld) -> BTreeMap<Dart, Vec<Dart>> {
     let mut starts: BTreeMap<Dart, Vec<Dart>> = BTreeMap::new();
     for state in known.with_fixed_marker() {
         starts.entry(state.placed).or_default().push(state.pose);
     }
-    let proof = |facing, walk, claim| Proof {
-        worlds: vec![(graph, facing)],
-        marker,
-        walk: Some(walk),
-        claims: vec![claim],
+    starts
+}
+
+/// `None` for all poses of a world.
+fn unless_all(poses: Vec<Dart>, graph: &EmbeddedGraph) -> Option<Vec<Dart>> {
+    (poses.len() < graph.dart_count()).then_some(poses)
+}
+
+/// That some choice of visits fits a known world, or a proof for each place of the marker that none does.
+fn of_visits<'w>(known: &'w KnownWorld, marker: MarkerKind, visits: &[VisitSet]) -> Vec<Proof<'w>> {
+    let graph = &known.graph;
+    let proof = |facing, claim| {
+        let seen = Some(Seen::Visits(visits.to_vec()));
+        Proof { worlds: vec![(graph, facing)], marker, seen, claims: vec![claim] }
+    };
+    let states = known.with_fixed_marker();
+    if let Some((State { pose: from, placed }, choice)) =
+        choice_in_world(graph, &marker, &states, visits)
+    {
+        return vec![proof(placed, Claim::Fits { from, choice })];
+    }
+    let misfits = |(facing, poses)| proof(facing, Claim::Misfits { from: unless_all(poses, graph) });
+    starts_of(known).into_iter().map(misfits).collect()
+}
+
+/// That a walk is one in a known world, or a proof for each place of the marker that it is not.
+fn in_known_world(known: &KnownWorld, marker: MarkerKind, walk: Walk) -> Vec<Proof<'_>> {
+    let graph = &known.graph;
+    let starts = starts_of(known);
+    let proof = |facing, walk, claim| {
+        let seen = Some(Seen::Walk(walk));
+        Proof { worlds: vec![(graph, facing)], marker, seen, claims: vec![claim] }
     };
     // The visit at which the last of the poses differs.
     let mut differs = 0;
@@ -68,8 +100,7 @@ fn in_known_world(known: &KnownWorld, marker: MarkerKind, walk: Walk) -> Vec<Pro
     }
     let walk = walk.up_to(differs);
     let diverges = |(facing, poses): (Dart, Vec<Dart>)| {
-        let from = (poses.len() < graph.dart_count()).then_some(poses);
-        proof(facing, walk.clone(), Claim::Diverges { from })
+        proof(facing, walk.clone(), Claim::Diverges { from: unless_all(poses, graph) })
     };
     starts.into_iter().map(diverges).collect()
 }
@@ -89,5 +120,6 @@ fn in_found_world(
         Err(NotProved::Open(_) | NotProved::OtherMarker) => Claim::Conforms { from },
         Err(why) => return Err(why),
     };
-    Ok(Proof { worlds: vec![(graph, facing)], marker, walk: Some(walk), claims: vec![claim] })
+    let seen = Some(Seen::Walk(walk));
+    Ok(Proof { worlds: vec![(graph, facing)], marker, seen, claims: vec![claim] })
 }

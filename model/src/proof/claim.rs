@@ -11,6 +11,7 @@ use crate::{
     isomorphism::isomorphism,
     marker::{Directional, MarkerKind},
     percept::{Door, Sighting},
+    visits::ChosenAlternative,
 };
 
 /// A claim, and what shows that it is true.
@@ -24,6 +25,10 @@ pub enum Claim {
     Conforms { from: Dart },
     /// The walk is one in the world from none of these poses; `None`: from no pose.
     Diverges { from: Option<Vec<Dart>> },
+    /// The visits fit the world from this pose, with these alternatives.
+    Fits { from: Dart, choice: Vec<ChosenAlternative> },
+    /// The visits fit the world from none of these poses, whatever is chosen; `None`: from no pose.
+    Misfits { from: Option<Vec<Dart>> },
     /// From the first pair of poses no walk distinguishes the two worlds: these pairs are a bisimulation.
     Indistinguishable { pairs: Vec<[Dart; 2]> },
     /// Each of these walks distinguishes the two worlds.
@@ -65,8 +70,10 @@ pub enum NotProved {
     Open(usize),
     #[error("proofs are about fixed markers, and not about `{0}`")]
     Aid(&'static str),
-    #[error("several percepts are possible at some visits")]
+    #[error("several percepts are possible at some visits, and no world is known")]
     Possible,
+    #[error("the robot drove where its scanner did not look")]
+    UnseenWay,
     #[error("the map is not complete")]
     NoMap,
     #[error("the map does not give this walk")]
@@ -88,6 +95,8 @@ impl Claim {
             Self::Unexplained { .. } => "unexplained",
             Self::Conforms { .. } => "conforms",
             Self::Diverges { .. } => "diverges",
+            Self::Fits { .. } => "fits",
+            Self::Misfits { .. } => "misfits",
             Self::Indistinguishable { .. } => "indistinguishable",
             Self::Distinguishable { .. } => "distinguishable",
             Self::Isomorphic { .. } => "isomorphic",

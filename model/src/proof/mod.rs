@@ -13,6 +13,7 @@ pub use walk::{Walk, WalkRecorder};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     marker::{Directional, MarkerKind, NoMarker},
+    visits::VisitSet,
 };
 
 /// Claims about the same worlds and the same walk, each with its steps. It is written by its
@@ -22,15 +23,22 @@ pub struct Proof<'g> {
     /// At most two worlds, each with the dart by which the marker was placed.
     pub worlds: Vec<(&'g EmbeddedGraph, Dart)>,
     pub marker: MarkerKind,
-    pub walk: Option<Walk>,
+    pub seen: Option<Seen>,
     pub claims: Vec<Claim>,
+}
+
+/// What a robot saw on its way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Seen {
+    Walk(Walk),
+    Visits(Vec<VisitSet>),
 }
 
 impl<'g> Proof<'g> {
     /// A claim about two embedded graphs, whose markers do not matter.
     pub fn of_graphs(graphs: [&'g EmbeddedGraph; 2], claim: Claim) -> Self {
         let worlds = graphs.map(|graph| (graph, Dart(0))).to_vec();
-        Self { worlds, marker: NoMarker, walk: None, claims: vec![claim] }
+        Self { worlds, marker: NoMarker, seen: None, claims: vec![claim] }
     }
 
     /// That this is the map of the only world that gives a walk. The robot began at the marker, with the pose of the facing
@@ -44,7 +52,7 @@ impl<'g> Proof<'g> {
         }
         let claim = Claim::determined(&walk, Directional, facing)?;
         let worlds = vec![(map, facing)];
-        Ok(Self { worlds, marker: Directional, walk: Some(walk), claims: vec![claim] })
+        Ok(Self { worlds, marker: Directional, seen: Some(Seen::Walk(walk)), claims: vec![claim] })
     }
 }
 

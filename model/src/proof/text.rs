@@ -2,10 +2,11 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::{Claim, Contradiction, Passage, Proof, Step, Walk, WalkPair};
+use super::{Claim, Contradiction, Passage, Proof, Seen, Step, Walk, WalkPair};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::{Door, MarkerSet, Sighting},
+    visits::{ChosenAlternative, VisitAlternative, VisitSet, VisitWay},
 };
 
 /// The first line of each proof.
@@ -37,8 +38,10 @@ impl Display for Proof<'_> {
             write_world(out, graph, facing)?;
         }
         writeln!(out, "marker {}", self.marker.name())?;
-        if let Some(walk) = &self.walk {
-            write!(out, "{walk}")?;
+        match &self.seen {
+            Some(Seen::Walk(walk)) => write!(out, "{walk}")?,
+            Some(Seen::Visits(visits)) => write_visits(out, visits)?,
+            None => {}
         }
         self.claims.iter().try_for_each(|claim| write!(out, "{claim}"))
     }
@@ -81,6 +84,27 @@ impl Display for Walk {
     }
 }
 
+fn write_visits(out: &mut Formatter, visits: &[VisitSet]) -> fmt::Result {
+    writeln!(out, "visits")?;
+    for visit in visits {
+        let way = match visit.way() {
+            VisitWay::Through => "through",
+            VisitWay::Back => "back",
+        };
+        writeln!(out, "visit {way}")?;
+        for alternative in visit.alternatives() {
+            let Some(VisitAlternative { percept, door }) = alternative else {
+                writeln!(out, "none")?;
+                continue;
+            };
+            let door = door.map_or_else(|| "any".to_owned(), |door| door.0.to_string());
+            let sighting = word(percept.sighting).unwrap_or_default();
+            writeln!(out, "junction {} {door} {sighting}", percept.degree)?;
+        }
+    }
+    Ok(())
+}
+
 impl Display for Claim {
     fn fmt(&self, out: &mut Formatter) -> fmt::Result {
         writeln!(out, "claim {}", self.name())?;
@@ -94,8 +118,15 @@ impl Display for Claim {
                 writeln!(out, "contradiction {contradiction}")?;
             }
             Self::Conforms { from } => write_darts(out, "from", [*from])?,
-            Self::Diverges { from: Some(from) } => write_darts(out, "from", from.iter().copied())?,
-            Self::Diverges { from: None } => writeln!(out, "from any")?,
+            Self::Fits { from, choice } => {
+                write_darts(out, "from", [*from])?;
+                for ChosenAlternative { number, door } in choice {
+                    let door = door.map_or_else(String::new, |door| format!(" {}", door.0));
+                    writeln!(out, "choose {number}{door}")?;
+                }
+            }
+            Self::Diverges { from: Some(from) } | Self::Misfits { from: Some(from) } => write_darts(out, "from", from.iter().copied())?,
+            Self::Diverges { from: None } | Self::Misfits { from: None } => writeln!(out, "from any")?,
             Self::Indistinguishable { pairs } => {
                 for pair in pairs {
                     write_darts(out, "pair", *pair)?;

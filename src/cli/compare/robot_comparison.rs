@@ -163,7 +163,7 @@ impl<'w> RobotComparison<'w> {
         let [a, b] = self.worlds;
         let facing = |world: &'w NamedWorld| (&world.graph, world.start.unwrap_or(Dart(0)));
         let worlds = vec![facing(a), facing(b)];
-        Ok(Proof { worlds, marker, walk: None, claims: vec![of_graphs, claim] })
+        Ok(Proof { worlds, marker, seen: None, claims: vec![of_graphs, claim] })
     }
 
     /// A pair of states in words.

@@ -89,7 +89,7 @@ impl WorldPairs {
             let differ = Some(differ).filter(|claim| matches!(claim, Claim::NotIsomorphic { .. }));
             let alike = Claim::indistinguishable(&comparison, [start, pose]);
             let claims = differ.into_iter().chain([alike]).collect();
-            Proof { worlds: vec![one, other], marker, walk: None, claims }.to_string()
+            Proof { worlds: vec![one, other], marker, seen: None, claims }.to_string()
         };
         Ok(self.pairs().into_iter().map(proof).collect())
     }
