@@ -9,7 +9,7 @@ use toposlam_model::{
     folding::SmallestWorld,
     marker::MarkerKind,
     proof::{Claim, NotProved, Proof, Seen, Walk, unexplained},
-    visits::{VisitSet, choice_in_world},
+    visits::{VisitAlternative, VisitSet, choice_in_world},
 };
 
 use super::{check::CheckedLog, known_world::KnownWorld, possible_visits::VisitFit};
@@ -66,8 +66,18 @@ fn unless_all(poses: Vec<Dart>, graph: &EmbeddedGraph) -> Option<Vec<Dart>> {
 /// That some choice of visits fits a known world, or a proof for each place of the marker that none does.
 fn of_visits<'w>(known: &'w KnownWorld, marker: MarkerKind, visits: &[VisitSet]) -> Vec<Proof<'w>> {
     let graph = &known.graph;
+    let exists = |alternative: &Option<VisitAlternative>| {
+        let Some(VisitAlternative { percept, door }) = alternative else { return true };
+        door.is_none_or(|door| door.0 < percept.degree)
+    };
+    // No robot has taken a door that does not exist.
+    let possible = |visit: &VisitSet| {
+        let alternatives = visit.alternatives().iter().copied();
+        VisitSet::new(alternatives.filter(exists), visit.way())
+    };
+    let visits: &Vec<_> = &visits.iter().map(possible).collect();
     let proof = |facing, claim| {
-        let seen = Some(Seen::Visits(visits.to_vec()));
+        let seen = Some(Seen::Visits(visits.clone()));
         Proof { worlds: vec![(graph, facing)], marker, seen, claims: vec![claim] }
     };
     let states = known.with_fixed_marker();
