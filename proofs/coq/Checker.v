@@ -46,7 +46,7 @@ Inductive reason :=
   (* A walk. *)
   | DegreeIs of N | SightingDiffers | DoorMissing of N | LengthsDiffer | GivesAll of N
   (* Steps. *)
-  | NoVisit of N | NoMove of N | NotPointing of N | NotOne | TwoDoors | DegreesJoined
+  | NoVisit of N | NoMove of N | NotPointing of N | NotOne | TwoDoors | OtherDegree
   | Open of N & N
   (* Contradictions. *)
   | NoContradiction | NotOneVertex
@@ -268,15 +268,14 @@ Definition walked_of (w : walk_text) : walked :=
   Walked w (table_of (see_lines w)) (table_of (door_lines w)) (length (see_lines w)) (length (door_lines w)).
 
 (** What is known: each visit's label, which is another visit and the door that leads from there to the entry dart of
-    this one; the visits of each vertex, by the visit that stands for it, and their number; and whether visits with
-    different degrees are one vertex. A visit without an entry stands for itself. *)
+    this one; and the visits of each vertex, by the visit that stands for it, with their number. A visit without an
+    entry stands for itself. *)
 Record knowledge := Knowledge {
   labels : table walk_dart;
-  members : table (N * seq N);
-  mixed : bool
+  members : table (N * seq N)
 }.
 
-Definition nothing_known := Knowledge empty empty false.
+Definition nothing_known := Knowledge empty empty.
 
 Section Steps.
 
@@ -333,21 +332,24 @@ Definition relabel (k : knowledge) (to from : walk_dart) : knowledge :=
     let: (s', turned) := odflt (visit, N0) (find labels' visit) in
     if s' == s then put labels' visit (r, N.modulo (N.add turned shift) (degree_at r)) else labels' in
   Knowledge (foldl move (labels k) visits')
-    (put (members k) r (N.add count count', catrev visits' visits))
-    (mixed k || (degree_at r != degree_at s)).
+    (put (members k) r (N.add count count', catrev visits' visits)).
+
+(** Whether two names are those of two doors of one vertex, or of vertices with different degrees. *)
+Definition two_doors (x y : walk_dart) : bool := (x.1 == y.1) && (x.2 != y.2).
+Definition other_degree (x y : walk_dart) : bool := degree_at x.1 != degree_at y.1.
 
 (** What is known after a step. *)
 Definition after (k : knowledge) (s : step) : knowledge + reason :=
-  if mixed k then inr DegreesJoined
-  else
-    match shows k s with
-    | inr reason => inr reason
-    | inl (x, y) =>
-        let x := name_of k x in
-        let y := name_of k y in
-        if x.1 == y.1 then if x.2 == y.2 then inl k else inr TwoDoors
-        else inl (if N.ltb (class k x.1).1 (class k y.1).1 then relabel k y x else relabel k x y)
-    end.
+  match shows k s with
+  | inr reason => inr reason
+  | inl (x, y) =>
+      let x := name_of k x in
+      let y := name_of k y in
+      if two_doors x y then inr TwoDoors
+      else if other_degree x y then inr OtherDegree
+      else inl (if x.1 == y.1 then k
+                else if N.ltb (class k x.1).1 (class k y.1).1 then relabel k y x else relabel k x y)
+  end.
 
 (** What is known after some steps, the first of which has the number [part]. *)
 Fixpoint after_all (k : knowledge) (part : N) (steps : seq step) : knowledge + N * reason :=
@@ -427,42 +429,36 @@ Definition is_pointing (seen : N * sighting_word) : bool := if seen.2 is WordPoi
 (** Why a contradiction is none. *)
 Definition not_contradictory (k : knowledge) (c : contradiction) : option reason :=
   let by_test test := if test then None else Some NoContradiction in
-  if mixed k && (if c is ByDegrees _ _ then false else true) then Some DegreesJoined
-  else
-    match c with
-    | ByStep s =>
-        match shows k s with
-        | inr reason => Some reason
-        | inl (x, y) =>
-            let x := name_of k x in let y := name_of k y in by_test ((x.1 == y.1) && (x.2 != y.2))
+  match c with
+  | ByStep s =>
+      match shows k s with
+      | inr reason => Some reason
+      | inl (x, y) =>
+          let x := name_of k x in let y := name_of k y in by_test (two_doors x y || other_degree x y)
+      end
+  | BySightings a b =>
+      if ~~ visited a then Some (NoVisit a) else if ~~ visited b then Some (NoVisit b)
+      else if (label k a).1 != (label k b).1 then Some NotOneVertex
+      else
+        match marker with
+        | WordDirectional => by_test (points_elsewhere k a b || points_elsewhere k b a)
+        | WordUndirectedEdge | WordDirectedEdge =>
+            by_test ((name_of k (a, N0) == name_of k (b, N0)) && ~~ same_sighting (sighting_at a) (sighting_at b))
+        | _ => by_test (~~ same_sighting (sighting_at a) (sighting_at b))
         end
-    | ByDegrees a b =>
-        if ~~ visited a then Some (NoVisit a) else if ~~ visited b then Some (NoVisit b)
-        else if (label k a).1 != (label k b).1 then Some NotOneVertex
-        else by_test (degree_at a != degree_at b)
-    | BySightings a b =>
-        if ~~ visited a then Some (NoVisit a) else if ~~ visited b then Some (NoVisit b)
-        else if (label k a).1 != (label k b).1 then Some NotOneVertex
-        else
-          match marker with
-          | WordDirectional => by_test (points_elsewhere k a b || points_elsewhere k b a)
-          | WordUndirectedEdge | WordDirectedEdge =>
-              by_test ((name_of k (a, N0) == name_of k (b, N0)) && ~~ same_sighting (sighting_at a) (sighting_at b))
-          | _ => by_test (~~ same_sighting (sighting_at a) (sighting_at b))
-          end
-    | ByEdge m =>
-        if ends_of (Along m) is Some (x, y) then by_test (name_of k x == name_of k y) else Some (NoMove m)
-    | ByPercept a =>
-        if ~~ visited a then Some (NoVisit a)
-        else by_test ((degree_at a == N0) || ~~ can_see (degree_at a) (sighting_at a))
-    | ByDoor m =>
-        if find (door_at w) m is Some i then by_test (N.leb (degree_at m) i) else Some (NoMove m)
-    | ByNoMarker =>
-        if marker is WordDirectional then
-          if has is_pointing (see_lines (walk_of w)) then Some NoContradiction
-          else if complete k then None else Some (open_door k)
-        else Some OnlyDirectional
-    end.
+  | ByEdge m =>
+      if ends_of (Along m) is Some (x, y) then by_test (name_of k x == name_of k y) else Some (NoMove m)
+  | ByPercept a =>
+      if ~~ visited a then Some (NoVisit a)
+      else by_test ((degree_at a == N0) || ~~ can_see (degree_at a) (sighting_at a))
+  | ByDoor m =>
+      if find (door_at w) m is Some i then by_test (N.leb (degree_at m) i) else Some (NoMove m)
+  | ByNoMarker =>
+      if marker is WordDirectional then
+        if has is_pointing (see_lines (walk_of w)) then Some NoContradiction
+        else if complete k then None else Some (open_door k)
+      else Some OnlyDirectional
+  end.
 
 End Steps.
 

@@ -47,8 +47,7 @@ Inductive passage := Along of N | Against of N.
 Inductive step := Mark of N & N | Beyond of passage & passage.
 
 Inductive contradiction :=
-  | ByStep of step | ByDegrees of N & N | BySightings of N & N | ByEdge of N | ByPercept of N | ByDoor of N
-  | ByNoMarker.
+  | ByStep of step | BySightings of N & N | ByEdge of N | ByPercept of N | ByDoor of N | ByNoMarker.
 
 (** The claims, each with what its proof needs. Darts are given by their numbers. Without a list of darts, a walk
     diverges from any. *)

@@ -126,7 +126,6 @@ let contradiction r = function
   | "contradiction" :: what ->
       Some
         (match what with
-        | [ "degrees"; a; b ] -> ByDegrees (number_of r a, number_of r b)
         | [ "sightings"; a; b ] -> BySightings (number_of r a, number_of r b)
         | [ "edge"; m ] -> ByEdge (number_of r m)
         | [ "percept"; a ] -> ByPercept (number_of r a)
@@ -207,7 +206,7 @@ let why = function
   | NotPointing k -> say "at visit %d no directional marker was seen" (int k)
   | NotOne -> "the darts from which these passages leave are not known to be one"
   | TwoDoors -> "these darts are two doors of one vertex: this would be a contradiction"
-  | DegreesJoined -> "the steps before join visits with different degrees: only contradiction degrees can follow"
+  | OtherDegree -> "these darts were seen at vertices of different degrees: this would be a contradiction"
   | Open (k, i) -> say "the trail is not complete: door %d of visit %d is open" (int i) (int k)
   | NoContradiction -> "this is no contradiction"
   | NotOneVertex -> "these visits are not known to be one vertex"
@@ -251,7 +250,8 @@ let proof r =
     | _ -> malformed r "a world, or the kind of the marker, is expected here"
   in
   let walked = if r.words = Some [ "walk" ] then Some (walk r) else None in
-  let s = { worlds = items worlds; marker_line; walk_line = (match walked with Some (w, _) -> Some w | None -> None) } in
+  let walk_line = match walked with Some (w, _) -> Some w | None -> None in
+  let s = { worlds = items worlds; marker_line; walk_line } in
   let prepared = prepare s in
   let rec claims count =
     match r.words with
