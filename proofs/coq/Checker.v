@@ -1,0 +1,636 @@
+(** Definitions only: the checker of proofs of verdicts, a program without any search. It is extracted with binary
+    numbers and tables of the standard library, and its functions on long lists call themselves last, so that it
+    checks long walks fast. What an accepted claim says is in [Verdicts.v]. *)
+
+From Coq Require Import BinNat FMapPositive.
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Verdicts.
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** * Tables by number *)
+
+Definition table := PositiveMap.t.
+
+Definition empty {A} : table A := PositiveMap.empty A.
+Definition find A (t : table A) (n : N) : option A := PositiveMap.find (N.succ_pos n) t.
+Definition put A (t : table A) (n : N) (a : A) : table A := PositiveMap.add (N.succ_pos n) a t.
+
+Definition has_entry A (t : table A) (n : N) : bool := if find t n is Some _ then true else false.
+
+(** A table of a list, by the places in it. *)
+Definition table_of A (s : seq A) : table A :=
+  (foldl (fun t_n a => (put t_n.1 t_n.2 a, N.succ t_n.2)) (empty, N0) s).1.
+
+Definition length A (s : seq A) : N := foldl (fun n _ => N.succ n) N0 s.
+
+(** Whether something is true of all numbers from [i] on and below [n]. Not more of them are tried than a list is
+    long. *)
+Fixpoint all_below T (fuel : seq T) (i n : N) (test : N -> bool) : bool :=
+  if N.eqb i n then true
+  else if fuel is _ :: fuel then if test i then all_below fuel (N.succ i) n test else false else false.
+
+(** * Why something is not proved *)
+
+(** The vertices and edges of a world, by the number of the world; a visit of the walk; a part of the claim, in the
+    order of its lines; or the claim. *)
+Inductive place := InWorld of N | AtVisit of N | AtPart of N | InClaim.
+
+Inductive reason :=
+  (* A world. *)
+  | NoEdge | DartTwice of N | NoDart of N | EdgesDiffer of N | NotConnected of N | TablesWrong
+  (* What a claim needs. *)
+  | WrongParts | OnlyDirectional | NothingClaimed
+  (* A walk. *)
+  | DegreeIs of N | SightingDiffers | DoorMissing of N | LengthsDiffer | GivesAll of N
+  (* Steps. *)
+  | NoVisit of N | NoMove of N | NotPointing of N | NotOne | TwoDoors | OtherDegree
+  | Open of N & N
+  (* Contradictions. *)
+  | NoContradiction | NotOneVertex
+  (* Pairs, images and poses. *)
+  | PerceptsDiffer of N & N | NoPair of N & N | PerceptsSame | NoImage of N | NotKept of N | ImageShared of N
+  | PosesLeftOut of N | OtherPose of N.
+
+Inductive outcome := Accepted | Refused of place & reason.
+
+(** * Worlds *)
+
+Record tables := Tables {
+  (* Of each dart: the dart at the other end of its edge; the next dart clockwise; and where it stands in the
+     list of all darts, vertex by vertex: the first place of its vertex, the degree, its own place from there. *)
+  opposite_of : table N;
+  next_of : table N;
+  stand_of : table (N * N * N);
+  (* The dart at each place of this list. *)
+  dart_at : table N;
+  (* The darts in any order, also as a table. *)
+  dart_list : seq N;
+  dart_set : table unit;
+  facing_dart : N
+}.
+
+Definition opposite_in (T : tables) (d : N) : N := odflt d (find (opposite_of T) d).
+Definition stand_in (T : tables) (d : N) : N * N * N := odflt (N0, N0, N0) (find (stand_of T) d).
+Definition degree_in (T : tables) (d : N) : N := (stand_in T d).1.2.
+
+Definition turn_in (T : tables) (d i : N) : N :=
+  let: (first, degree, j) := stand_in T d in
+  odflt d (find (dart_at T) (N.add first (N.modulo (N.add j i) degree))).
+
+Definition traverse_in (T : tables) (d i : N) : N := opposite_in T (turn_in T d i).
+
+(** For each pair of a dart and the next one clockwise in a line. *)
+Fixpoint fold_around_from A (f : A -> N -> N -> A) (first d : N) (others : seq N) (a : A) : A :=
+  if others is e :: others then fold_around_from f first e others (f a d e) else f a d first.
+Definition fold_around A (f : A -> N -> N -> A) (a : A) (line : seq N) : A :=
+  if line is d :: others then fold_around_from f d d others a else a.
+
+Definition numbers_in (lines : seq (seq N)) : seq N := foldl (fun s line => catrev line s) [::] lines.
+
+Definition set_of (s : seq N) : table unit := foldl (fun t d => put t d tt) empty s.
+
+Definition opposites_of (edges : seq (N * N)) : table N :=
+  foldl (fun t edge => put (put t edge.1 edge.2) edge.2 edge.1) empty edges.
+
+Definition nexts_of (lines : seq (seq N)) : table N := foldl (fold_around (fun t d e => put t d e)) empty lines.
+
+(** The tables [stand_of] and [dart_at]. *)
+Definition stands_of (lines : seq (seq N)) : table (N * N * N) * table N :=
+  let place_line state line :=
+    let: (stands, at_places, first) := state in
+    let degree := length line in
+    let: (stands, at_places, _) :=
+      foldl (fun '(stands, at_places, j) d =>
+               (put stands d (first, degree, j), put at_places (N.add first j) d, N.succ j))
+            (stands, at_places, N0) line in
+    (stands, at_places, N.add first degree) in
+  (foldl place_line (empty, empty, N0) lines).1.
+
+Definition tables_of (t : world_text) : tables :=
+  let darts := numbers_in (vertex_lines t) in
+  let: (stands, at_places) := stands_of (vertex_lines t) in
+  Tables (opposites_of (edge_lines t)) (nexts_of (vertex_lines t)) stands at_places darts (set_of darts)
+    (facing_line t).
+
+(** The darts that are found from those of a list over edges and around vertices. *)
+Fixpoint reach (T : tables) (fuel : seq N) (found : table unit) (next : seq N) : table unit :=
+  if fuel is _ :: fuel then
+    if next is d :: next then
+      if has_entry found d then reach T fuel found next
+      else reach T fuel (put found d tt)
+             (opposite_in T d :: odflt d (find (next_of T) d) :: next)
+    else found
+  else found.
+
+(** As long as the darts twice, and one more. *)
+Definition reached (T : tables) : table unit :=
+  reach T (facing_dart T :: catrev (dart_list T) (dart_list T)) empty [:: facing_dart T].
+
+(** Whether the tables are right at a dart. *)
+Definition right_at (T : tables) (d : N) : bool :=
+  match find (stand_of T) d, find (opposite_of T) d, find (next_of T) d with
+  | Some (first, degree, j), Some o, Some e =>
+      let next := N.modulo (N.succ j) degree in
+      if find (stand_of T) e is Some (first', degree', j') then
+        [&& N.ltb j degree, first' == first, degree' == degree, j' == next,
+            find (dart_at T) (N.add first j) == Some d,
+            find (dart_at T) (N.add first next) == Some e,
+            find (opposite_of T) o == Some d, o != d & has_entry (dart_set T) o]
+      else false
+  | _, _, _ => false
+  end.
+
+Definition tables_right (t : world_text) (T : tables) : bool :=
+  [&& has_entry (dart_set T) (facing_dart T),
+      all (right_at T) (dart_list T),
+      all (fun edge => (find (opposite_of T) edge.1 == Some edge.2) && (find (opposite_of T) edge.2 == Some edge.1))
+        (edge_lines t)
+    & foldl (fold_around (fun right d e => if right then find (next_of T) d == Some e else false)) true
+        (vertex_lines t)].
+
+(** The first dart of a list without a property. *)
+Fixpoint first_not (test : N -> bool) (s : seq N) : option N :=
+  if s is d :: s then if test d then first_not test s else Some d else None.
+
+Fixpoint first_twice (seen : table unit) (s : seq N) : option N :=
+  if s is d :: s then if has_entry seen d then Some d else first_twice (put seen d tt) s else None.
+
+(** What is wrong with a world, if anything. *)
+Definition wrong_world (t : world_text) (T : tables) : option reason :=
+  let n := length (dart_list T) in
+  let edge_darts := foldl (fun s edge => edge.1 :: edge.2 :: s) [::] (edge_lines t) in
+  if edge_darts is [::] then Some NoEdge
+  else if first_twice empty (dart_list T) is Some d then Some (DartTwice d)
+  else if first_not (fun d => N.ltb d n) (dart_list T) is Some d then Some (NoDart d)
+  else if first_twice empty edge_darts is Some d then Some (EdgesDiffer d)
+  else if first_not (has_entry (set_of edge_darts)) (dart_list T) is Some d then Some (EdgesDiffer d)
+  else if first_not (has_entry (dart_set T)) edge_darts is Some d then Some (NoDart d)
+  else if ~~ has_entry (dart_set T) (facing_line t) then Some (NoDart (facing_line t))
+  else if ~~ tables_right t T then Some TablesWrong
+  else if first_not (has_entry (reached T)) (dart_list T) is Some d then Some (NotConnected d)
+  else None.
+
+(** * Percepts in a world *)
+
+Definition same_vertex_in (T : tables) (d e : N) : bool := (stand_in T d).1.1 == (stand_in T e).1.1.
+
+(** The door by which a dart leads to another one of its vertex. *)
+Definition door_in (T : tables) (d e : N) : N :=
+  N.modulo (N.add (stand_in T e).2 (N.sub (degree_in T d) (stand_in T d).2)) (degree_in T d).
+
+Definition sighting_in (T : tables) (marker : marker_word) (d : N) : sighting_word :=
+  let facing := facing_dart T in
+  let beyond := opposite_in T facing in
+  match marker with
+  | WordNone => WordNothing
+  | WordUndirected => if same_vertex_in T d facing then WordLying else WordNothing
+  | WordDirectional => if same_vertex_in T d facing then WordPointing (door_in T d facing) else WordNothing
+  | WordUndirectedEdge => if (d == facing) || (d == beyond) then WordPassed else WordNothing
+  | WordDirectedEdge => if d == facing then WordAgainst else if d == beyond then WordAlong else WordNothing
+  | WordTwoIdentical =>
+      match same_vertex_in T d facing, same_vertex_in T d beyond with
+      | true, true => WordTwo
+      | true, false | false, true => WordLying
+      | false, false => WordNothing
+      end
+  | WordTwoDistinct =>
+      match same_vertex_in T d facing, same_vertex_in T d beyond with
+      | true, true => WordBoth
+      | true, false => WordFirst
+      | false, true => WordSecond
+      | false, false => WordNothing
+      end
+  end.
+
+Definition same_sighting (s s' : sighting_word) : bool :=
+  match s, s' with
+  | WordPointing i, WordPointing j => i == j
+  | WordNothing, WordNothing | WordLying, WordLying | WordTwo, WordTwo | WordFirst, WordFirst
+  | WordSecond, WordSecond | WordBoth, WordBoth | WordPassed, WordPassed | WordAlong, WordAlong
+  | WordAgainst, WordAgainst => true
+  | _, _ => false
+  end.
+
+(** The first visit at which a walk from a dart has another percept, or takes a door that does not exist. *)
+Fixpoint differs (T : tables) (marker : marker_word) (visit d : N) (seen : seq (N * sighting_word)) (doors : seq N) :
+    option (N * reason) :=
+  match seen, doors with
+  | (degree, sighting) :: seen, _ =>
+      if degree != degree_in T d then Some (visit, DegreeIs (degree_in T d))
+      else if ~~ same_sighting sighting (sighting_in T marker d) then Some (visit, SightingDiffers)
+      else match seen, doors with
+           | _ :: _, i :: doors =>
+               if N.ltb i degree then differs T marker (N.succ visit) (traverse_in T d i) seen doors
+               else Some (visit, DoorMissing i)
+           | [::], [::] => None
+           | _, _ => Some (visit, LengthsDiffer)
+           end
+  | _, _ => Some (visit, LengthsDiffer)
+  end.
+
+(** Those of some poses, each with the dart at which it began, that have the percepts of a walk from here on. *)
+Fixpoint remain (T : tables) (marker : marker_word) (poses : seq (N * N)) (seen : seq (N * sighting_word))
+    (doors : seq N) : seq (N * N) :=
+  match poses, seen with
+  | [::], _ => [::]
+  | _, [::] => poses
+  | _, (degree, sighting) :: seen =>
+      let fits d := (degree == degree_in T d) && same_sighting sighting (sighting_in T marker d) in
+      match doors with
+      | [::] => foldl (fun left pose => if fits pose.2 then pose :: left else left) [::] poses
+      | i :: doors =>
+          remain T marker
+            (foldl (fun left pose =>
+                      if fits pose.2 && N.ltb i degree then (pose.1, traverse_in T pose.2 i) :: left else left)
+               [::] poses)
+            seen doors
+      end
+  end.
+
+(** * Steps *)
+
+(** A dart of the walk: a visit, and the door that leads to the dart. *)
+Notation walk_dart := (N * N)%type.
+
+(** The walk as tables. *)
+Record walked := Walked {
+  walk_of : walk_text;
+  percept_at : table (N * sighting_word);
+  door_at : table N;
+  visits : N;
+  moves : N
+}.
+
+Definition walked_of (w : walk_text) : walked :=
+  Walked w (table_of (see_lines w)) (table_of (door_lines w)) (length (see_lines w)) (length (door_lines w)).
+
+(** What is known: each visit's label, which is another visit and the door that leads from there to the entry dart of
+    this one; and the visits of each vertex, by the visit that stands for it, with their number. A visit without an
+    entry stands for itself. *)
+Record knowledge := Knowledge {
+  labels : table walk_dart;
+  members : table (N * seq N)
+}.
+
+Definition nothing_known := Knowledge empty empty.
+
+Section Steps.
+
+Variables (marker : marker_word) (w : walked).
+
+Definition degree_at (visit : N) : N := if find (percept_at w) visit is Some (degree, _) then degree else N0.
+Definition sighting_at (visit : N) : sighting_word :=
+  if find (percept_at w) visit is Some (_, sighting) then sighting else WordNothing.
+
+Definition label (k : knowledge) (visit : N) : walk_dart := odflt (visit, N0) (find (labels k) visit).
+
+Definition class (k : knowledge) (visit : N) : N * seq N := odflt (1%num, [:: visit]) (find (members k) visit).
+
+(** Darts of the walk that are known to be one have the same name. *)
+Definition name_of (k : knowledge) (x : walk_dart) : walk_dart :=
+  let: (visit, turned) := label k x.1 in (visit, N.modulo (N.add turned x.2) (degree_at visit)).
+
+(** The darts from which a passage leaves, and to which it leads. *)
+Definition ends_of (p : passage) : option (walk_dart * walk_dart) :=
+  match p with
+  | Along m => if find (door_at w) m is Some i then Some ((m, i), (N.succ m, N0)) else None
+  | Against m => if find (door_at w) m is Some i then Some ((N.succ m, N0), (m, i)) else None
+  end.
+
+Definition move_of (p : passage) : N := match p with Along m => m | Against m => m end.
+
+(** The darts that a step shows to be one, or why it does not. *)
+Definition shows (k : knowledge) (s : step) : walk_dart * walk_dart + reason :=
+  match s with
+  | Mark a b =>
+      if marker is WordDirectional then
+        match sighting_at a, sighting_at b with
+        | WordPointing i, WordPointing j => inl ((a, i), (b, j))
+        | WordPointing _, _ => inr (NotPointing b)
+        | _, _ => inr (NotPointing a)
+        end
+      else inr OnlyDirectional
+  | Beyond p q =>
+      match ends_of p, ends_of q with
+      | Some (x, x'), Some (y, y') => if name_of k x == name_of k y then inl (x', y') else inr NotOne
+      | None, _ => inr (NoMove (move_of p))
+      | _, None => inr (NoMove (move_of q))
+      end
+  end.
+
+(** The visits of [from] get labels of [to]: the first has the door [at_from] where the other has [at_to]. *)
+Definition relabel (k : knowledge) (to from : walk_dart) : knowledge :=
+  let: (r, at_to) := to in
+  let: (s, at_from) := from in
+  let shift := N.add at_to (N.sub (degree_at s) at_from) in
+  let: (count, visits) := class k r in
+  let: (count', visits') := class k s in
+  let move labels' visit :=
+    let: (s', turned) := odflt (visit, N0) (find labels' visit) in
+    if s' == s then put labels' visit (r, N.modulo (N.add turned shift) (degree_at r)) else labels' in
+  Knowledge (foldl move (labels k) visits')
+    (put (members k) r (N.add count count', catrev visits' visits)).
+
+(** Whether two names are those of two doors of one vertex, or of vertices with different degrees. *)
+Definition two_doors (x y : walk_dart) : bool := (x.1 == y.1) && (x.2 != y.2).
+Definition other_degree (x y : walk_dart) : bool := degree_at x.1 != degree_at y.1.
+
+(** What is known after a step. *)
+Definition after (k : knowledge) (s : step) : knowledge + reason :=
+  match shows k s with
+  | inr reason => inr reason
+  | inl (x, y) =>
+      let x := name_of k x in
+      let y := name_of k y in
+      if two_doors x y then inr TwoDoors
+      else if other_degree x y then inr OtherDegree
+      else inl (if x.1 == y.1 then k
+                else if N.ltb (class k x.1).1 (class k y.1).1 then relabel k y x else relabel k x y)
+  end.
+
+(** What is known after some steps, the first of which has the number [part]. *)
+Fixpoint after_all (k : knowledge) (part : N) (steps : seq step) : knowledge + N * reason :=
+  if steps is s :: steps then
+    match after k s with
+    | inl k => after_all k (N.succ part) steps
+    | inr reason => inr (part, reason)
+    end
+  else inl k.
+
+(** The names of the ends of all moves. *)
+Fixpoint names_of_ends (k : knowledge) (ends : table (table unit)) (visit : N) (doors : seq N) : table (table unit) :=
+  let add ends x :=
+    let: (visit, i) := name_of k x in put ends visit (put (odflt empty (find ends visit)) i tt) in
+  if doors is i :: doors then names_of_ends k (add (add ends (visit, i)) (N.succ visit, N0)) (N.succ visit) doors
+  else ends.
+
+(** As many numbers as moves have ends, and one more. *)
+Definition ends_fuel : seq N := N0 :: catrev (door_lines (walk_of w)) (door_lines (walk_of w)).
+
+(** Whether each door of a vertex is known to be an end of some move; for each visit, of that which stands for it. *)
+Definition covered (k : knowledge) (fuel : seq N) (ends : table (table unit)) (visit : N) : bool :=
+  let stands := (label k visit).1 in
+  if N.ltb stands (visits w) then
+    if (label k stands).1 == stands then
+      if stands == visit then
+        let its := odflt empty (find ends visit) in
+        all_below fuel N0 (degree_at visit) (has_entry its)
+      else true
+    else false
+  else false.
+
+Definition complete (k : knowledge) : bool :=
+  let ends := names_of_ends k empty N0 (door_lines (walk_of w)) in
+  all_below (see_lines (walk_of w)) N0 (visits w) (covered k ends_fuel ends).
+
+(** An open door, for the message. *)
+Definition open_door (k : knowledge) : reason :=
+  let ends := names_of_ends k empty N0 (door_lines (walk_of w)) in
+  let ends_fuel := ends_fuel in
+  let fix first_open (fuel : seq (N * sighting_word)) visit :=
+    if fuel is _ :: fuel then
+      if covered k ends_fuel ends visit then first_open fuel (N.succ visit)
+      else
+        let its := odflt empty (find ends visit) in
+        let fix first_missing (fuel : seq N) i :=
+          if fuel is _ :: fuel then if has_entry its i then first_missing fuel (N.succ i) else i else i in
+        Open visit (first_missing (door_lines (walk_of w)) N0)
+    else Open N0 N0 in
+  first_open (see_lines (walk_of w)) N0.
+
+(** Whether a marker of this kind can be seen so, at a vertex of this degree. *)
+Definition can_see (degree : N) (s : sighting_word) : bool :=
+  match marker, s with
+  | _, WordNothing => true
+  | WordDirectional, WordPointing i => N.ltb i degree
+  | WordUndirected, WordLying => true
+  | WordUndirectedEdge, WordPassed => true
+  | WordDirectedEdge, (WordAlong | WordAgainst) => true
+  | WordTwoIdentical, (WordLying | WordTwo) => true
+  | WordTwoDistinct, (WordFirst | WordSecond | WordBoth) => true
+  | _, _ => false
+  end.
+
+Definition visited (visit : N) : bool := N.ltb visit (visits w).
+
+(** Whether the first visit saw a directional marker along a dart, and the second not along the same. *)
+Definition points_elsewhere (k : knowledge) (a b : N) : bool :=
+  match sighting_at a, sighting_at b with
+  | WordPointing i, WordPointing j => name_of k (a, i) != name_of k (b, j)
+  | WordPointing _, _ => true
+  | _, _ => false
+  end.
+
+Definition is_pointing (seen : N * sighting_word) : bool := if seen.2 is WordPointing _ then true else false.
+
+(** Why a contradiction is none. *)
+Definition not_contradictory (k : knowledge) (c : contradiction) : option reason :=
+  let by_test test := if test then None else Some NoContradiction in
+  match c with
+  | ByStep s =>
+      match shows k s with
+      | inr reason => Some reason
+      | inl (x, y) =>
+          let x := name_of k x in let y := name_of k y in by_test (two_doors x y || other_degree x y)
+      end
+  | BySightings a b =>
+      if ~~ visited a then Some (NoVisit a) else if ~~ visited b then Some (NoVisit b)
+      else if (label k a).1 != (label k b).1 then Some NotOneVertex
+      else
+        match marker with
+        | WordDirectional => by_test (points_elsewhere k a b || points_elsewhere k b a)
+        | WordUndirectedEdge | WordDirectedEdge =>
+            by_test ((name_of k (a, N0) == name_of k (b, N0)) && ~~ same_sighting (sighting_at a) (sighting_at b))
+        | _ => by_test (~~ same_sighting (sighting_at a) (sighting_at b))
+        end
+  | ByEdge m =>
+      if ends_of (Along m) is Some (x, y) then by_test (name_of k x == name_of k y) else Some (NoMove m)
+  | ByPercept a =>
+      if ~~ visited a then Some (NoVisit a)
+      else by_test ((degree_at a == N0) || ~~ can_see (degree_at a) (sighting_at a))
+  | ByDoor m =>
+      if find (door_at w) m is Some i then by_test (N.leb (degree_at m) i) else Some (NoMove m)
+  | ByNoMarker =>
+      if marker is WordDirectional then
+        if has is_pointing (see_lines (walk_of w)) then Some NoContradiction
+        else if complete k then None else Some (open_door k)
+      else Some OnlyDirectional
+  end.
+
+End Steps.
+
+(** * Pairs, images and walks from two poses *)
+
+(** Two worlds with their markers. *)
+Section Pairs.
+
+Variables (T U : tables) (marker marker' : marker_word).
+
+Definition same_percept (p q : N) : bool :=
+  (degree_in T p == degree_in U q) && same_sighting (sighting_in T marker p) (sighting_in U marker' q).
+
+Definition pair_table (pairs : seq (N * N)) : table (table unit) :=
+  foldl (fun t pair => put t pair.1 (put (odflt empty (find t pair.1)) pair.2 tt)) empty pairs.
+
+Definition is_pair (t : table (table unit)) (p q : N) : bool :=
+  if find t p is Some qs then has_entry qs q else false.
+
+(** The first pair with different percepts, or with a door that leads out of the pairs. *)
+Fixpoint wrong_pair (t : table (table unit)) (part : N) (pairs : seq (N * N)) : option (N * reason) :=
+  if pairs is (p, q) :: pairs then
+    if ~~ has_entry (dart_set T) p then Some (part, NoDart p)
+    else if ~~ has_entry (dart_set U) q then Some (part, NoDart q)
+    else if ~~ same_percept p q then Some (part, PerceptsDiffer p q)
+    else if all_below (dart_list T) N0 (degree_in T p)
+              (fun i => is_pair t (traverse_in T p i) (traverse_in U q i))
+    then wrong_pair t (N.succ part) pairs
+    else Some (part, NoPair p q)
+  else None.
+
+(** Whether a walk's doors exist from both poses, and its last percepts differ. *)
+Fixpoint not_distinguished (p q : N) (doors : seq N) : option reason :=
+  if doors is i :: doors then
+    if N.ltb i (degree_in T p) && N.ltb i (degree_in U q)
+    then not_distinguished (traverse_in T p i) (traverse_in U q i) doors
+    else Some (DoorMissing i)
+  else if same_percept p q then Some PerceptsSame else None.
+
+Fixpoint not_all_distinguished (part : N) (walks : seq (N * N * seq N)) : option (N * reason) :=
+  if walks is (p, q, doors) :: walks then
+    if ~~ has_entry (dart_set T) p then Some (part, NoDart p)
+    else if ~~ has_entry (dart_set U) q then Some (part, NoDart q)
+    else if not_distinguished p q doors is Some reason then Some (part, reason)
+    else not_all_distinguished (N.succ part) walks
+  else None.
+
+(** The first line of a map of darts that has no dart, or where the map does not keep both permutations. *)
+Fixpoint wrong_image (images : table N) (part : N) (pairs : seq (N * N)) : option (N * reason) :=
+  if pairs is (p, q) :: pairs then
+    if ~~ has_entry (dart_set T) p then Some (part, NoDart p)
+    else if ~~ has_entry (dart_set U) q then Some (part, NoDart q)
+    else if [&& find images p == Some q,
+                find images (opposite_in T p) == Some (opposite_in U q)
+              & find images (odflt p (find (next_of T) p)) == Some (odflt q (find (next_of U) q))]
+    then wrong_image images (N.succ part) pairs
+    else Some (part, NotKept p)
+  else None.
+
+Definition image_table (pairs : seq (N * N)) : table N :=
+  foldl (fun t pair => put t pair.1 pair.2) empty pairs.
+
+End Pairs.
+
+(** * Claims *)
+
+Definition refused_at (wrong : option (N * reason)) : outcome :=
+  if wrong is Some (part, reason) then Refused (AtPart part) reason else Accepted.
+
+(** A setting with its tables, which are made once for all its claims. *)
+Record prepared := Prepared {
+  set : setting;
+  world_tables : seq (world_text * tables);
+  world_wrong : option (N * reason);
+  walk_tables : option walked
+}.
+
+Fixpoint first_wrong (i : N) (ts : seq (world_text * tables)) : option (N * reason) :=
+  if ts is (t, T) :: ts then
+    if wrong_world t T is Some reason then Some (i, reason) else first_wrong (N.succ i) ts
+  else None.
+
+Definition prepare (s : setting) : prepared :=
+  let ts := map (fun t => (t, tables_of t)) (worlds s) in
+  Prepared s ts (first_wrong N0 ts) (omap walked_of (walk_line s)).
+
+(** The same world with its marker at a dart. *)
+Definition facing_at (T : tables) (d : N) : tables :=
+  Tables (opposite_of T) (next_of T) (stand_of T) (dart_at T) (dart_list T) (dart_set T) d.
+
+(** For the world of [U], as [not_all_distinguished], with directional markers by these poses, which for the world of
+    [T] are always the same. *)
+Fixpoint not_all_refuted (T U : tables) (p : N) (part : N) (walks : seq (N * N * seq N)) : option (N * reason) :=
+  if walks is (p', q, doors) :: walks then
+    if p' != p then Some (part, OtherPose p')
+    else if ~~ has_entry (dart_set U) q then Some (part, NoDart q)
+    else if not_distinguished (facing_at T p) (facing_at U q) WordDirectional WordDirectional p q doors
+      is Some reason then Some (part, reason)
+    else not_all_refuted T U p (N.succ part) walks
+  else None.
+
+Definition check_determined (marker : marker_word) (T : tables) (w : walked) (from : N) (steps : seq step) : outcome :=
+  if marker isn't WordDirectional then Refused InClaim OnlyDirectional
+  else if ~~ has_entry (dart_set T) from then Refused InClaim (NoDart from)
+  else if differs T marker N0 from (see_lines (walk_of w)) (door_lines (walk_of w)) is Some (visit, reason) then
+    Refused (AtVisit visit) reason
+  else
+    match after_all marker w nothing_known N0 steps with
+    | inr (part, reason) => Refused (AtPart part) reason
+    | inl k => if complete w k then Accepted else Refused InClaim (open_door w k)
+    end.
+
+Definition check_unexplained (marker : marker_word) (w : walked) (steps : seq step) (c : contradiction) : outcome :=
+  if N.succ (moves w) != visits w then Refused InClaim LengthsDiffer
+  else
+    match after_all marker w nothing_known N0 steps with
+    | inr (part, reason) => Refused (AtPart part) reason
+    | inl k =>
+        if not_contradictory marker w k c is Some reason then Refused (AtPart (length steps)) reason else Accepted
+    end.
+
+Definition check_conforms (marker : marker_word) (T : tables) (w : walked) (from : N) : outcome :=
+  if ~~ has_entry (dart_set T) from then Refused InClaim (NoDart from)
+  else if differs T marker N0 from (see_lines (walk_of w)) (door_lines (walk_of w)) is Some (visit, reason) then
+    Refused (AtVisit visit) reason
+  else Accepted.
+
+Definition check_diverges (marker : marker_word) (T : tables) (w : walked) (from : option (seq N)) : outcome :=
+  let poses := odflt (dart_list T) from in
+  if first_not (has_entry (dart_set T)) poses is Some d then Refused InClaim (NoDart d)
+  else
+    let both := foldl (fun s d => (d, d) :: s) [::] poses in
+    if remain T marker both (see_lines (walk_of w)) (door_lines (walk_of w)) is (d, _) :: _ then
+      Refused InClaim (GivesAll d)
+    else Accepted.
+
+Definition check_isomorphic (T U : tables) (pairs : seq (N * N)) : outcome :=
+  let images := image_table pairs in
+  let origins := foldl (fun t pair => put t pair.2 pair.1) empty pairs in
+  if wrong_image T U images N0 pairs is Some (part, reason) then Refused (AtPart part) reason
+  else if first_not (has_entry images) (dart_list T) is Some d then Refused InClaim (NoImage d)
+  else if first_not (fun p => if find images p is Some q then find origins q == Some p else false) (dart_list T)
+    is Some d then Refused InClaim (ImageShared d)
+  else if first_not (has_entry origins) (dart_list U) is Some d then Refused InClaim (PosesLeftOut d)
+  else Accepted.
+
+Definition check_not_isomorphic (T U : tables) (walks : seq (N * N * seq N)) : outcome :=
+  if walks is (p, _, _) :: _ then
+    if ~~ has_entry (dart_set T) p then Refused (AtPart N0) (NoDart p)
+    else if not_all_refuted T U p N0 walks is Some (part, reason) then Refused (AtPart part) reason
+    else
+      let compared := set_of (foldl (fun s walk => walk.1.2 :: s) [::] walks) in
+      if first_not (has_entry compared) (dart_list U) is Some d then Refused InClaim (PosesLeftOut d) else Accepted
+  else Refused InClaim NothingClaimed.
+
+(** The checker. *)
+Definition check (p : prepared) (c : claim) : outcome :=
+  let marker := marker_line (set p) in
+  if world_wrong p is Some (i, reason) then Refused (InWorld i) reason
+  else
+    match c, world_tables p, walk_tables p with
+    | Determined from steps, [:: (_, T)], Some w => check_determined marker T w from steps
+    | Unexplained steps c, [::], Some w => check_unexplained marker w steps c
+    | Conforms from, [:: (_, T)], Some w => check_conforms marker T w from
+    | Diverges from, [:: (_, T)], Some w => check_diverges marker T w from
+    | Indistinguishable pairs, [:: (_, T); (_, U)], _ =>
+        if pairs is [::] then Refused InClaim NothingClaimed
+        else refused_at (wrong_pair T U marker marker (pair_table pairs) N0 pairs)
+    | Distinguishable walks, [:: (_, T); (_, U)], _ =>
+        if walks is [::] then Refused InClaim NothingClaimed
+        else refused_at (not_all_distinguished T U marker marker N0 walks)
+    | Isomorphic pairs, [:: (_, T); (_, U)], _ => check_isomorphic T U pairs
+    | NotIsomorphic walks, [:: (_, T); (_, U)], _ => check_not_isomorphic T U walks
+    | _, _, _ => Refused InClaim WrongParts
+    end.

@@ -1,0 +1,151 @@
+(** Definitions only: what a proof of a verdict contains, and what its claims say. The format is that of
+    [docs/proofs-of-verdicts.md]; the checker is in [Checker.v]. Numbers are binary, for the program that is
+    extracted from it. *)
+
+From Coq Require Import BinNat.
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Spec Markers Walks.
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** * What is written *)
+
+(** A world: the darts of each vertex clockwise, the two darts of each edge, and the facing dart. *)
+Record world_text := WorldText {
+  vertex_lines : seq (seq N);
+  edge_lines : seq (N * N);
+  facing_line : N
+}.
+
+Inductive marker_word :=
+  | WordNone | WordUndirected | WordDirectional | WordUndirectedEdge | WordDirectedEdge | WordTwoIdentical
+  | WordTwoDistinct.
+
+Inductive sighting_word :=
+  | WordNothing | WordLying | WordPointing of N | WordTwo | WordFirst | WordSecond | WordBoth
+  | WordPassed | WordAlong | WordAgainst.
+
+(** A walk: what was perceived at each visit, and the door that was taken from each visit to the next. *)
+Record walk_text := WalkText {
+  see_lines : seq (N * sighting_word);
+  door_lines : seq N
+}.
+
+(** What all claims of a proof are about. *)
+Record setting := Setting {
+  worlds : seq world_text;
+  marker_line : marker_word;
+  walk_line : option walk_text
+}.
+
+(** The edge of a move, from its visit to the next or back. *)
+Inductive passage := Along of N | Against of N.
+
+(** Two darts of the walk are one: the facing dart, seen at two visits; or those to which two passages lead. *)
+Inductive step := Mark of N & N | Beyond of passage & passage.
+
+Inductive contradiction :=
+  | ByStep of step | BySightings of N & N | ByEdge of N | ByPercept of N | ByDoor of N | ByNoMarker.
+
+(** The claims, each with what its proof needs. Darts are given by their numbers. Without a list of darts, a walk
+    diverges from any. *)
+Inductive claim :=
+  | Determined of N & seq step
+  | Unexplained of seq step & contradiction
+  | Conforms of N
+  | Diverges of option (seq N)
+  | Indistinguishable of seq (N * N)
+  | Distinguishable of seq (N * N * seq N)
+  | Isomorphic of seq (N * N)
+  | NotIsomorphic of seq (N * N * seq N).
+
+(** * What it says *)
+
+Definition marker_of (word : marker_word) : marker :=
+  match word with
+  | WordNone => no_marker
+  | WordUndirected => undirected
+  | WordDirectional => directional
+  | WordUndirectedEdge => undirected_edge
+  | WordDirectedEdge => directed_edge
+  | WordTwoIdentical => two_identical
+  | WordTwoDistinct => two_distinct
+  end.
+
+Definition sighting_of (word : sighting_word) : sighting :=
+  match word with
+  | WordNothing => Nothing
+  | WordLying => Lying
+  | WordPointing i => Pointing (N.to_nat i)
+  | WordTwo => Two
+  | WordFirst => First
+  | WordSecond => Second
+  | WordBoth => Both
+  | WordPassed => Passed
+  | WordAlong => PassedAlong
+  | WordAgainst => PassedAgainst
+  end.
+
+Definition doors_of (doors : seq N) : seq door := map N.to_nat doors.
+
+Definition percept_of (seen : N * sighting_word) : percept := (N.to_nat seen.1, sighting_of seen.2).
+
+Definition seen_of (w : walk_text) : seq percept := map percept_of (see_lines w).
+
+(** From this pose the walk has these percepts, and the doors that it takes exist. *)
+Definition gives (M : marker) (W : start) (pose : W) (w : walk_text) : Prop :=
+  percepts M pose (doors_of (door_lines w)) = seen_of w /\ passable pose (doors_of (door_lines w)).
+
+(** Each dart of a vertex with the next one clockwise: the last with the first. *)
+Definition clockwise_pairs (line : seq N) : seq (N * N) := zip line (rot 1 line).
+
+(** A text describes a start whose darts are numbered. *)
+Definition describes (t : world_text) (W : start) (number : W -> N) : Prop :=
+  [/\ injective number,
+      forall n, n \in flatten (vertex_lines t) <-> exists d, number d = n,
+      forall d, (number d, number (clockwise d)) \in flatten (map clockwise_pairs (vertex_lines t)),
+      forall d, (number d, number (opposite d)) \in edge_lines t \/ (number (opposite d), number d) \in edge_lines t
+    & number (facing W) = facing_line t].
+
+(** There is a start that the text describes, and in each of them this is true. *)
+Definition in_world (t : world_text) (claimed : forall W : start, (W -> N) -> Prop) : Prop :=
+  (exists W number, @describes t W number) /\ forall W number, @describes t W number -> claimed W number.
+
+Arguments in_world : clear implicits.
+
+(** The dart with this number has a property. *)
+Definition at_dart (W : start) (number : W -> N) (n : N) (claimed : W -> Prop) : Prop :=
+  exists2 d, number d = n & claimed d.
+
+Definition claim_true (s : setting) (c : claim) : Prop :=
+  let M := marker_of (marker_line s) in
+  match c, worlds s, walk_line s with
+  | Determined from _, [:: t], Some w =>
+      in_world t (fun W number => at_dart number from (fun pose : W =>
+        gives directional pose w /\
+        forall (V : start) (p : V), percepts directional p (doors_of (door_lines w)) = seen_of w ->
+          exists f : V -> W, [/\ isomorphism f, f (facing V) = facing W & f p = pose]))
+  | Unexplained _ _, [::], Some w => forall (V : start) (p : V), ~ gives M p w
+  | Conforms from, [:: t], Some w =>
+      in_world t (fun W number => at_dart number from (fun pose : W => gives M pose w))
+  | Diverges from, [:: t], Some w =>
+      in_world t (fun W number => forall pose : W,
+        (if from is Some poses then number pose \in poses else true) -> ~ gives M pose w)
+  | Indistinguishable pairs, [:: t; u], _ =>
+      in_world t (fun V number => in_world u (fun W number' =>
+        forall pair, pair \in pairs ->
+          at_dart number pair.1 (fun p : V => at_dart number' pair.2 (fun q : W => alike M p q))))
+  | Distinguishable walks, [:: t; u], _ =>
+      in_world t (fun V number => in_world u (fun W number' =>
+        forall pair doors, (pair, doors) \in walks ->
+          at_dart number pair.1 (fun p : V => at_dart number' pair.2 (fun q : W =>
+            [/\ passable p (doors_of doors), passable q (doors_of doors)
+              & percepts M p (doors_of doors) <> percepts M q (doors_of doors)]))))
+  | Isomorphic _, [:: t; u], _ =>
+      in_world t (fun V _ => in_world u (fun W _ => isomorphic V W))
+  | NotIsomorphic _, [:: t; u], _ =>
+      in_world t (fun V _ => in_world u (fun W _ => ~ isomorphic V W))
+  | _, _, _ => False
+  end.
