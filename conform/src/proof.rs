@@ -86,7 +86,8 @@ fn of_visits<'w>(known: &'w KnownWorld, marker: MarkerKind, visits: &[VisitSet])
     {
         return vec![proof(placed, Claim::Fits { from, choice })];
     }
-    let misfits = |(facing, poses)| proof(facing, Claim::Misfits { from: unless_all(poses, graph) });
+    let misfits =
+        |(facing, poses)| proof(facing, Claim::Misfits { from: unless_all(poses, graph) });
     starts_of(known).into_iter().map(misfits).collect()
 }
 

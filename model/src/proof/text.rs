@@ -125,8 +125,12 @@ impl Display for Claim {
                     writeln!(out, "choose {number}{door}")?;
                 }
             }
-            Self::Diverges { from: Some(from) } | Self::Misfits { from: Some(from) } => write_darts(out, "from", from.iter().copied())?,
-            Self::Diverges { from: None } | Self::Misfits { from: None } => writeln!(out, "from any")?,
+            Self::Diverges { from: Some(from) } | Self::Misfits { from: Some(from) } => {
+                write_darts(out, "from", from.iter().copied())?
+            }
+            Self::Diverges { from: None } | Self::Misfits { from: None } => {
+                writeln!(out, "from any")?
+            }
             Self::Indistinguishable { pairs } => {
                 for pair in pairs {
                     write_darts(out, "pair", *pair)?;

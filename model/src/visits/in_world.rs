@@ -99,7 +99,8 @@ pub fn choice_in_world(
         let alternatives = || visit.alternatives().iter().copied().enumerate();
         let (earlier, chosen) = before.iter().find_map(|&earlier| {
             alternatives().find_map(|(number, alternative)| {
-                let at = step.after(earlier, alternative).iter().position(|&found| found == state)?;
+                let at =
+                    step.after(earlier, alternative).iter().position(|&found| found == state)?;
                 let open = alternative.filter(|chosen| chosen.door.is_none() && !is_last);
                 let door = open.and_then(|chosen| chosen.doors().nth(at));
                 Some((earlier, ChosenAlternative { number, door }))
