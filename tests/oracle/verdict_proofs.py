@@ -1,19 +1,32 @@
-"""Proofs of verdicts read a second time, in another language, from docs/proofs-of-verdicts.md alone.
+"""A second reader of proofs of verdicts, written from docs/proofs-of-verdicts.md alone.
 
-As literal as possible: a line that is not exactly of the format is refused, and so is a step that the steps before it do
-not justify. Nothing is searched. Where the page leaves something open the strictest reading is taken.
+It follows the page word by word: what is not exactly of the format is refused, and so is what the lines
+before it do not justify. Where the page leaves something open, the strictest reading is taken.
 
-    python3 tests/oracle/verdict_proofs.py FILE...               one line a claim, and one for what is wrong first in a file
-    python3 tests/oracle/verdict_proofs.py --verdicts FILE...    one line a file: accepted or refused
+    python3 tests/oracle/verdict_proofs.py FILE...               each claim proved, and what is wrong first
+    python3 tests/oracle/verdict_proofs.py --verdicts FILE...    each file: accepted or refused
 
-A file is proved if all claims of all its proofs are; the exit code is 0 if all files are. A `dart` is one end of an edge,
-and a `pose` the dart by which the robot came in. A `percept` is a pair: the degree, and the sighting as a tuple of words
-and numbers, ("nothing",) or ("pointing", 2). A `clash` is two darts that cannot be one.
+A file is accepted if all its proofs hold; the exit code is 0 if all files are. A percept is a tuple of its
+words, (2, "nothing") or (2, "pointing", 0), and a dart of a walk is a pair, of a visit and a door.
 """
 
+import functools
 import re
 import sys
-from collections import Counter
+
+# What a claim needs before it.
+CLAIMS = {
+    "determined": "world, walk",
+    "unexplained": "walk",
+    "conforms": "world, walk",
+    "diverges": "world, walk",
+    "indistinguishable": "world, world",
+    "distinguishable": "world, world",
+    "isomorphic": "world, world",
+    "not-isomorphic": "world, world",
+    "fits": "world, visits",
+    "misfits": "world, visits",
+}
 
 # What each kind of marker can show.
 SIGHTINGS = {
@@ -25,412 +38,424 @@ SIGHTINGS = {
     "two-identical": {"nothing", "lying", "two"},
     "two-distinct": {"nothing", "first", "second", "both"},
 }
-AT_VERTICES, ON_EDGES = {"undirected", "two-identical", "two-distinct"}, {"undirected-edge", "directed-edge"}
-WORDS = set.union(*SIGHTINGS.values()) - {"pointing"}
-DIGITS = 4000  # a limit of this program: Python converts no longer numbers
+
+# What a form has in capitals is a number, but for these.
+NUMBER = "(0|[1-9][0-9]{0,3999})"  # a limit of this program: Python may refuse to convert more digits
+FIELDS = {
+    "CLAIM": "|".join(CLAIMS),
+    "MARKER": "|".join(SIGHTINGS),
+    "SIGHTING": "|".join(set.union(*SIGHTINGS.values()) - {"pointing"}) + f"|pointing {NUMBER}",
+    "M": f"[+-]{NUMBER}",
+    "N": f"[+-]{NUMBER}",
+    "REASON": f"(sightings {NUMBER}|edge|percept|door) {NUMBER}|unmarked",
+    "WAY": "through|back",
+    "DOOR": f"{NUMBER}|any",
+}
 
 
-class Wrong(Exception):
-    """What is wrong first in a file."""
+@functools.cache
+def pattern(form):
+    """The regular expression for a line of this form; `D...` is one number or several."""
+
+    def field(match):
+        word = f"({FIELDS.get(match[1], NUMBER)})"
+        return f"{word}( {word})*" if match[2] else word
+
+    return re.compile(re.sub(r"([A-Z]+)(\.\.\.)?", field, form) + "\n")
+
+
+class ProofError(Exception):
+    """What is wrong first in a file, and in which line."""
 
 
 class Lines:
-    """The lines of a file but for the remarks, with their numbers; `number` is that of the line taken last. A line that is
-    none, as it has bytes that are not printable ASCII or does not end, is kept without words."""
+    """The lines of a file with their numbers, without the remarks; then an empty one, which has no form."""
 
-    def __init__(self, data):
-        *lines, rest = data.split(b"\n")
-        words = [line.decode("ascii").split(" ") if re.fullmatch(rb"[ -~]*", line) else [] for line in lines]
-        words += [[]] if rest else []
-        self.lines = [pair for pair in enumerate(words, 1) if pair[1][:1] == [] or not pair[1][0].startswith("#")]
+    def __init__(self, lines):
+        self.lines = [pair for pair in enumerate([*lines, ""], 1) if not re.fullmatch("#[ -~]*\n", pair[1])]
         self.taken, self.number = 0, 1
 
-    def wrong(self, reason, number=None):
-        self.number = number or self.number
-        raise Wrong(reason)
+    def need(self, condition, otherwise):
+        if not condition:
+            raise ProofError(f"{self.number}: not proved: {otherwise}")
 
     def left(self):
-        return self.taken < len(self.lines)
+        return self.taken < len(self.lines) - 1
 
-    def next_is(self, *words):
-        return self.left() and self.lines[self.taken][1][: len(words)] == list(words)
+    def next_is(self, start):
+        return self.lines[self.taken][1].startswith((start + " ", start + "\n"))
 
-    def take(self):
-        """The words of the next line, of any form."""
-        if not self.left():
-            self.wrong("the proof is not complete")
-        self.number, words = self.lines[self.taken]
+    def take(self, form):
+        """The words of the next line, which has this form, behind the first one; numbers as numbers."""
+        self.number, line = self.lines[self.taken]
+        self.need(pattern(form).fullmatch(line), f"`{form}` expected")
         self.taken += 1
-        return words or self.wrong("not a line of printable ASCII that ends")
-
-    def word(self, first, allowed):
-        """The one word behind `first`."""
-        words = self.take()
-        if len(words) != 2 or words[0] != first or words[1] not in allowed:
-            self.wrong(f"`{first}` and one of its words expected")
-        return words[1]
-
-    def numbers(self, first, count=None):
-        """The numbers behind `first`: so many, or at least one."""
-        words = self.take()
-        if words[0] != first or (len(words) < 2 if count is None else len(words) != count + 1):
-            self.wrong(f"`{first}`, numbers: {'any' if count is None else count} expected")
-        return [self.read(word) for word in words[1:]]
-
-    def read(self, word):
-        if not re.fullmatch(r"0|[1-9][0-9]*", word) or len(word) > DIGITS:
-            self.wrong("a number expected")
-        return int(word)
+        return [int(word) if word.isdigit() else word for word in line.split()[1:]]
 
 
 class World:
-    """An embedded graph with its facing dart. `clockwise` has all darts of the vertex of a dart, `place` its own among them."""
+    """An embedded graph with its facing dart."""
 
     def __init__(self, lines):
-        lines.numbers("world", 0)
-        first = lines.number
+        lines.take("world")
         vertices, edges = [], []
         while lines.next_is("vertex"):
-            vertices.append(lines.numbers("vertex"))
+            vertices.append(lines.take("vertex D..."))
         while lines.next_is("edge"):
-            edges.append(lines.numbers("edge", 2))
-        (self.facing,) = lines.numbers("facing", 1)
+            edges.append(lines.take("edge D E"))
+        (self.facing,) = lines.take("facing D")
         self.darts = range(2 * len(edges))
         for groups in vertices, edges:
-            if sorted(dart for group in groups for dart in group) != list(self.darts):
-                lines.wrong("not each dart is in one vertex and in one edge", first)
-        if self.facing not in self.darts:
-            lines.wrong("no such dart")
-        self.clockwise, self.place, self.opposite = ([None] * len(self.darts) for _ in range(3))
-        for vertex in vertices:
-            for place, dart in enumerate(vertex):
-                self.clockwise[dart], self.place[dart] = vertex, place
-        for one, other in edges:
-            self.opposite[one], self.opposite[other] = other, one
-        reached, ahead = {0}, [0]
+            once = sorted(dart for group in groups for dart in group) == list(self.darts)
+            lines.need(once, "not each dart stands in one vertex and in one edge")
+        lines.need(self.facing in self.darts, "no such dart")
+        self.clockwise = {dart: vertex for vertex in vertices for dart in vertex}
+        self.place = {dart: place for vertex in vertices for place, dart in enumerate(vertex)}
+        self.opposite = {dart: other for edge in edges for dart, other in (edge, reversed(edge))}
+        reached, ahead = set(), [0]
         while ahead:
             dart = ahead.pop()
-            for other in self.opposite[dart], self.turned(dart, 1):
-                if other not in reached:
-                    reached.add(other)
-                    ahead.append(other)
-        if len(reached) < len(self.darts):
-            lines.wrong("the graph is not connected", first)
+            if dart not in reached:
+                reached.add(dart)
+                ahead += [self.opposite[dart], self.turned(dart, 1)]
+        lines.need(len(reached) == len(self.darts), "the graph is not connected")
 
     def degree(self, pose):
         return len(self.clockwise[pose])
 
-    def turned(self, pose, door):
-        return self.clockwise[pose][(self.place[pose] + door) % self.degree(pose)]
+    def turned(self, dart, door):
+        return self.clockwise[dart][(self.place[dart] + door) % self.degree(dart)]
 
     def behind(self, pose, door):
         """The pose behind a door, None if there is no such door."""
         return self.opposite[self.turned(pose, door)] if door < self.degree(pose) else None
 
-    def percept(self, kind, facing, pose):
-        """What the robot perceives if a marker of this kind was placed by the dart `facing`."""
+    def percept(self, kind, pose, facing=None):
+        """What a robot perceives with this marker, placed by the facing dart of the world or by another."""
+        facing = self.facing if facing is None else facing
+        other = self.opposite[facing]
         here = self.clockwise[pose] is self.clockwise[facing]
-        there = self.clockwise[pose] is self.clockwise[self.opposite[facing]]
+        there = self.clockwise[pose] is self.clockwise[other]
         if kind == "directional" and here:
-            return self.degree(pose), ("pointing", (self.place[facing] - self.place[pose]) % self.degree(pose))
-        sighting = "nothing"
-        if kind == "undirected" and here:
-            sighting = "lying"
-        elif kind == "two-identical":
-            sighting = ["nothing", "lying", "two"][here + there]
-        elif kind == "two-distinct":
-            sighting = {(1, 0): "first", (0, 1): "second", (1, 1): "both"}.get((here, there), "nothing")
-        elif kind == "undirected-edge" and pose in (facing, self.opposite[facing]):
-            sighting = "passed"
-        elif kind == "directed-edge" and pose in (facing, self.opposite[facing]):
-            sighting = "against" if pose == facing else "along"
-        return self.degree(pose), (sighting,)
-
-
-class Walk:
-    """What was perceived at each visit, and the doors taken."""
-
-    def __init__(self, lines):
-        lines.numbers("walk", 0)
-        self.percepts, self.doors = [self.see(lines)], []
-        while lines.next_is("door"):
-            self.doors += lines.numbers("door", 1)
-            self.percepts.append(self.see(lines))
-
-    def see(self, lines):
-        words = lines.take()
-        if words[0] == "see" and len(words) == 3 and words[2] in WORDS:
-            return lines.read(words[1]), (words[2],)
-        if words[0] == "see" and len(words) == 4 and words[2] == "pointing":
-            return lines.read(words[1]), ("pointing", lines.read(words[3]))
-        lines.wrong("`see`, a degree and a sighting expected")
-
-    def given(self, world, kind, pose):
-        """Whether the walk gives these percepts from the pose."""
-        for visit, percept in enumerate(self.percepts):
-            if world.percept(kind, world.facing, pose) != percept:
-                return False
-            if visit < len(self.doors):
-                pose = world.behind(pose, self.doors[visit])
-                if pose is None:
-                    return False
-        return True
+            return self.degree(pose), "pointing", (self.place[facing] - self.place[pose]) % self.degree(pose)
+        sighting = {
+            "none": "nothing",
+            "undirected": "lying" if here else "nothing",
+            "directional": "nothing",
+            "undirected-edge": "passed" if pose in (facing, other) else "nothing",
+            "directed-edge": {facing: "against", other: "along"}.get(pose, "nothing"),
+            "two-identical": ["nothing", "lying", "two"][here + there],
+            "two-distinct": [["nothing", "second"], ["first", "both"]][here][there],
+        }[kind]
+        return self.degree(pose), sighting
 
 
 class Trail:
-    """The vertices of a walk, as far as the steps tell. Visit k is at the vertex `name[k]`, and its door i is the door
-    i + turn[k] there, modulo the degree. Of two vertices that become one, the smaller takes the name of the other."""
+    """The visits of a walk, as far as the steps tell which are one vertex.
 
-    def __init__(self, lines, kind, walk):
-        self.lines, self.kind, self.walk = lines, kind, walk
-        self.degrees = [degree for degree, _ in walk.percepts]
-        self.sightings = [sighting for _, sighting in walk.percepts]
-        self.name = list(range(len(self.degrees)))
-        self.turn = [0] * len(self.degrees)
+    A vertex is named by one of its visits: door i of visit k is door i + turn[k] of visit name[k], modulo the
+    degree.
+    """
+
+    def __init__(self, lines, kind, percepts, doors):
+        self.lines, self.kind, self.doors = lines, kind, doors
+        self.degrees = [degree for degree, *_ in percepts]
+        self.sightings = [sighting for _, *sighting in percepts]
+        self.name = list(range(len(percepts)))
+        self.turn = [0] * len(percepts)
         self.visits = [[visit] for visit in self.name]
+
+    def visit(self, visit):
+        self.lines.need(visit < len(self.degrees), "no such visit")
+        return visit
+
+    def ends(self, move):
+        self.lines.need(move < len(self.doors), "no such move")
+        return (move, self.doors[move]), (move + 1, 0)
 
     def exists(self, dart):
         return dart[1] < self.degrees[dart[0]]
 
     def known(self, dart):
-        """The dart by the name of its vertex: two darts are known to be one if these are equal."""
+        """The dart by the name of its vertex; darts are known to be one if these are the same."""
         visit, door = dart
-        if not self.exists(dart):
-            self.lines.wrong(f"visit {visit} has no door for this")
+        self.lines.need(self.exists(dart), f"visit {visit} has no door {door}")
         return self.name[visit], (door + self.turn[visit]) % self.degrees[visit]
 
-    def below(self, number, limit):
-        if number >= limit:
-            self.lines.wrong("no such visit or move")
-        return number
-
-    def visit(self, word):
-        return self.below(self.lines.read(word), len(self.degrees))
-
-    def move(self, word):
-        return self.below(self.lines.read(word), len(self.walk.doors))
-
-    def ends(self, move):
-        return (move, self.walk.doors[move]), (move + 1, 0)
+    def same(self, one, other):
+        return self.known(one) == self.known(other)
 
     def passage(self, word):
         """The dart from which a passage leaves, and that to which it leads."""
-        if word[:1] not in ("+", "-"):
-            self.lines.wrong("a move with its sign expected")
-        ends = self.ends(self.move(word[1:]))
+        ends = self.ends(int(word[1:]))
         return ends if word[0] == "+" else ends[::-1]
 
-    def shown(self, words):
-        """The two darts that a step shows to be one."""
-        if len(words) == 3 and words[0] == "mark":
-            visits = [self.visit(word) for word in words[1:]]
-            if self.kind != "directional" or any(self.sightings[visit][0] != "pointing" for visit in visits):
-                self.lines.wrong("no directional marker was seen")
-            darts = [(visit, self.sightings[visit][1]) for visit in visits]
-        elif len(words) == 3 and words[0] == "beyond":
-            (one, darts_one), (other, darts_other) = (self.passage(word) for word in words[1:])
-            if self.known(one) != self.known(other):
-                self.lines.wrong("the passages are not known to leave from one dart")
-            darts = [darts_one, darts_other]
+    def shown(self, before=""):
+        """The two darts that the next line shows to be one: a step, with what stands before it."""
+        if self.lines.next_is(before + "mark"):
+            darts = []
+            for visit in self.lines.take(before + "mark K L")[-2:]:
+                _, *door = self.sightings[self.visit(visit)]
+                self.lines.need(self.kind == "directional" and door, "no directional marker was seen")
+                darts.append((visit, *door))
         else:
-            self.lines.wrong("no step")
-        for dart in darts:
-            self.known(dart)  # each exists
+            leaving, darts = zip(*map(self.passage, self.lines.take(before + "beyond M N")[-2:]))
+            self.lines.need(self.same(*leaving), "the passages are not known to leave from one dart")
+        self.lines.need(all(map(self.exists, darts)), "no such door")
         return darts
 
     def clash(self, one, other):
-        same_vertex = self.name[one[0]] == self.name[other[0]]
-        return self.degrees[one[0]] != self.degrees[other[0]] or same_vertex and self.known(one) != self.known(other)
+        """Whether two darts cannot be one."""
+        degrees_differ = self.degrees[one[0]] != self.degrees[other[0]]
+        return degrees_differ or (self.name[one[0]] == self.name[other[0]] and not self.same(one, other))
 
-    def step(self, words):
-        one, other = self.shown(words)
-        if self.clash(one, other):
-            self.lines.wrong("a contradiction, and no step")
-        (kept, door), (lost, its_door) = sorted(map(self.known, (one, other)), key=lambda known: -len(self.visits[known[0]]))
-        if kept != lost:
+    def step(self):
+        darts = self.shown()
+        self.lines.need(not self.clash(*darts), "a contradiction, and no step")
+        by_visits = sorted(map(self.known, darts), key=lambda dart: len(self.visits[dart[0]]))
+        (lost, lost_door), (kept, kept_door) = by_visits
+        if lost != kept:
             for visit in self.visits[lost]:
                 self.name[visit] = kept
-                self.turn[visit] = (self.turn[visit] + door - its_door) % self.degrees[visit]
+                self.turn[visit] = (self.turn[visit] + kept_door - lost_door) % self.degrees[visit]
             self.visits[kept] += self.visits[lost]
 
     def complete(self):
-        """Whether each door of each visit is known to be one with an end of a move."""
-        ends = [end for move in range(len(self.walk.doors)) for end in self.ends(move) if self.exists(end)]
-        seen = Counter(name for name, _ in set(map(self.known, ends)))
-        return all(seen[self.name[visit]] == degree for visit, degree in enumerate(self.degrees))
+        """Whether each door of each visit is known to be one with an end of some move."""
+        ends = (end for move in range(len(self.doors)) for end in self.ends(move))
+        ends = {self.known(end) for end in ends if self.exists(end)}
+        return all((name, door) in ends for name in set(self.name) for door in range(self.degrees[name]))
 
-    def contradiction(self, words):
-        """Whether it is one."""
-        kind, rest = words[0] if words else "", words[1:]
-        if kind in ("mark", "beyond"):
-            return self.clash(*self.shown(words))
-        if kind == "sightings" and len(rest) == 2:
-            one, other = map(self.visit, rest)
-            return self.name[one] == self.name[other] and self.differ(one, other)
-        if kind == "edge" and len(rest) == 1:
-            one, other = self.ends(self.move(rest[0]))
-            return self.known(one) == self.known(other)
-        if kind == "percept" and len(rest) == 1:
-            visit = self.visit(rest[0])
+    def contradiction(self):
+        """Whether the next line is one that holds."""
+        if self.lines.next_is("contradiction mark") or self.lines.next_is("contradiction beyond"):
+            return self.clash(*self.shown("contradiction "))
+        reason, *numbers = self.lines.take("contradiction REASON")
+        if reason == "sightings":
+            return self.differ(*map(self.visit, numbers))
+        if reason == "edge":
+            return self.same(*self.ends(*numbers))
+        if reason == "door":
+            return not self.exists(self.ends(*numbers)[0])
+        if reason == "percept":
+            visit = self.visit(*numbers)
             sighting, *door = self.sightings[visit]
-            return not self.degrees[visit] > max(door, default=0) or sighting not in SIGHTINGS[self.kind]
-        if kind == "door" and len(rest) == 1:
-            return not self.exists(self.ends(self.move(rest[0]))[0])
-        if kind == "unmarked" and not rest:
-            return self.kind == "directional" and set(self.sightings) == {("nothing",)} and self.complete()
-        self.lines.wrong("no contradiction of this form")
+            exist = all(self.exists((visit, door)) for door in [0, *door])
+            return not exist or sighting not in SIGHTINGS[self.kind]
+        nothing = all(sighting == ["nothing"] for sighting in self.sightings)
+        return self.kind == "directional" and nothing and self.complete()
 
     def differ(self, one, other):
-        """Whether what was seen at two visits to one vertex differs."""
-        seen, seen_there = self.sightings[one], self.sightings[other]
+        """Whether two visits are one vertex, and what was seen there differs."""
+        if self.name[one] != self.name[other] or self.kind == "none":
+            return False
         if self.kind == "directional":
-            marked = [{self.known((visit, door)) for door in self.sightings[visit][1:]} for visit in (one, other)]
-            return marked[0] != marked[1]
-        if self.kind in ON_EDGES:
-            return self.known((one, 0)) == self.known((other, 0)) and seen != seen_there
-        return self.kind in AT_VERTICES and seen != seen_there
+            return self.marked(one) != self.marked(other)
+        comparable = not self.kind.endswith("-edge") or self.same((one, 0), (other, 0))
+        return comparable and self.sightings[one] != self.sightings[other]
+
+    def marked(self, visit):
+        """The dart along which the marker was seen, if it was."""
+        return [self.known((visit, door)) for door in self.sightings[visit][1:]]
 
 
 class Proof:
-    """One proof: made by its parts, then checked claim by claim."""
+    """One proof: made by reading its parts, then checked claim by claim."""
 
     def __init__(self, lines):
-        self.lines = lines
-        if lines.take() != ["toposlam-proof", "1"]:
-            lines.wrong("`toposlam-proof 1` expected")
-        self.worlds = []
+        self.lines, self.worlds = lines, []
+        lines.take("toposlam-proof 1")
         while lines.next_is("world") and len(self.worlds) < 2:
             self.worlds.append(World(lines))
-        self.marker = lines.word("marker", SIGHTINGS)
-        self.walk = Walk(lines) if lines.next_is("walk") else None
+        parts = ["world"] * len(self.worlds)
+        (self.marker,) = lines.take("marker MARKER")
+        for part, read in ("walk", self.read_walk), ("visits", self.read_visits):
+            if lines.next_is(part):
+                read()
+                parts.append(part)
+        self.parts = ", ".join(parts)
+
+    def read_walk(self):
+        self.lines.take("walk")
+        self.percepts, self.doors = [tuple(self.lines.take("see DEGREE SIGHTING"))], []
+        while self.lines.next_is("door"):
+            self.doors += self.lines.take("door I")
+            self.percepts.append(tuple(self.lines.take("see DEGREE SIGHTING")))
+
+    def read_visits(self):
+        """A visit is its way and its alternatives: pairs of a percept and a door, or None for no vertex."""
+        self.lines.take("visits")
+        self.visits = []
+        while self.lines.next_is("visit") or not self.visits:
+            (way,) = self.lines.take("visit WAY")
+            alternatives = []
+            while self.lines.next_is("none") or self.lines.next_is("junction"):
+                if self.lines.next_is("none"):
+                    self.lines.take("none")
+                    alternatives.append(None)
+                else:
+                    degree, door, *sighting = self.lines.take("junction DEGREE DOOR SIGHTING")
+                    self.lines.need(door == "any" or door < degree, "a door below the degree expected")
+                    alternatives.append(((degree, *sighting), door))
+            self.visits.append((way, alternatives))
 
     def claims(self):
         """Checks each claim, and gives its kind."""
-        claims = {
-            "determined": (self.determined, 1, True), "unexplained": (self.unexplained, 0, True),
-            "conforms": (self.conforms, 1, True), "diverges": (self.diverges, 1, True),
-            "indistinguishable": (self.indistinguishable, 2, False), "distinguishable": (self.distinguishable, 2, False),
-            "isomorphic": (self.isomorphic, 2, False), "not-isomorphic": (self.not_isomorphic, 2, False),
-        }  # fmt: skip
         more = True
         while more:
-            kind = self.lines.word("claim", claims)
-            check, worlds, walk = claims[kind]
-            if len(self.worlds) != worlds or (self.walk is not None) != walk:
-                self.lines.wrong(f"`{kind}` is not about these worlds and this walk")
-            check()
-            self.lines.numbers("end", 0)
+            (kind,) = self.lines.take("claim CLAIM")
+            self.lines.need(self.parts == CLAIMS[kind], f"`{kind}` needs: {CLAIMS[kind]}")
+            getattr(self, kind.replace("-", "_"))()
+            self.lines.take("end")
             yield kind
             more = self.lines.next_is("claim")
 
     def pose(self, pose, world=0):
-        if pose not in self.worlds[world].darts:
-            self.lines.wrong("no such dart")
+        self.lines.need(pose in self.worlds[world].darts, "no such dart")
         return pose
 
-    def pair(self, word):
-        return tuple(self.pose(pose, world) for world, pose in enumerate(self.lines.numbers(word, 2)))
+    def poses(self):
+        """The poses behind `from`."""
+        if self.lines.next_is("from any"):
+            self.lines.take("from any")
+            return self.worlds[0].darts
+        return [self.pose(pose) for pose in self.lines.take("from D...")]
 
-    def percepts(self, pair):
-        return [world.percept(self.marker, world.facing, pose) for world, pose in zip(self.worlds, pair)]
+    def pair(self, form):
+        one, other = self.lines.take(form)
+        return self.pose(one), self.pose(other, 1)
 
     def behind(self, pair, door):
         return tuple(world.behind(pose, door) for world, pose in zip(self.worlds, pair))
 
-    def determined(self):
-        if self.marker != "directional":
-            self.lines.wrong("not a directional marker")
-        self.conforms()
-        trail = Trail(self.lines, self.marker, self.walk)
-        while not self.lines.next_is("end"):
-            trail.step(self.lines.take())
-        if not any(sighting[0] == "pointing" for sighting in trail.sightings):
-            self.lines.wrong("the marker was not seen")
-        if not trail.complete():
-            self.lines.wrong("the trail is not complete")
+    def alike(self, pair):
+        one, other = (world.percept(self.marker, pose) for world, pose in zip(self.worlds, pair))
+        return one == other
 
-    def unexplained(self):
-        trail = Trail(self.lines, self.marker, self.walk)
-        while not self.lines.next_is("contradiction"):
-            trail.step(self.lines.take())
-        if not trail.contradiction(self.lines.take()[1:]):
-            self.lines.wrong("no contradiction")
+    def given(self, pose):
+        """Whether the walk gives its percepts from this pose."""
+        (world,) = self.worlds
+        for percept, door in zip(self.percepts, [*self.doors, 0]):  # the last door is of no account
+            if pose is None or world.percept(self.marker, pose) != percept:
+                return False
+            pose = world.behind(pose, door)
+        return True
 
     def conforms(self):
-        (pose,) = self.lines.numbers("from", 1)
-        if not self.walk.given(self.worlds[0], self.marker, self.pose(pose)):
-            self.lines.wrong("the walk does not give these percepts")
+        pose = self.pose(*self.lines.take("from D"))
+        self.lines.need(self.given(pose), "the walk does not give these percepts")
 
     def diverges(self):
-        if self.lines.next_is("from", "any"):
-            self.lines.word("from", ["any"])
-            poses = self.worlds[0].darts
-        else:
-            poses = [self.pose(pose) for pose in self.lines.numbers("from")]
-        for pose in poses:
-            if self.walk.given(self.worlds[0], self.marker, pose):
-                self.lines.wrong(f"the walk gives these percepts from {pose}")
+        for pose in self.poses():
+            self.lines.need(not self.given(pose), f"the walk gives these percepts from {pose}")
+
+    def determined(self):
+        self.lines.need(self.marker == "directional", "not a directional marker")
+        self.conforms()
+        trail = Trail(self.lines, self.marker, self.percepts, self.doors)
+        while not self.lines.next_is("end"):
+            trail.step()
+        self.lines.need(any("pointing" in percept for percept in self.percepts), "the marker was not seen")
+        self.lines.need(trail.complete(), "the trail is not complete")
+
+    def unexplained(self):
+        trail = Trail(self.lines, self.marker, self.percepts, self.doors)
+        while not self.lines.next_is("contradiction"):
+            trail.step()
+        self.lines.need(trail.contradiction(), "no contradiction")
 
     def indistinguishable(self):
-        pairs = {}
+        pairs = set()
         while self.lines.next_is("pair") or not pairs:
-            pairs[self.pair("pair")] = self.lines.number
-        for pair, number in pairs.items():
-            one, other = self.percepts(pair)
-            if one != other:
-                self.lines.wrong("the percepts differ", number)
-            for door in range(one[0]):
-                if self.behind(pair, door) not in pairs:
-                    self.lines.wrong(f"the poses behind door {door} are no pair", number)
+            pairs.add(self.pair("pair P Q"))
+        for pair in pairs:
+            self.lines.need(self.alike(pair), f"the percepts of {pair} differ")
+            for door in range(self.worlds[0].degree(pair[0])):
+                self.lines.need(self.behind(pair, door) in pairs, f"behind door {door} of {pair} is no pair")
 
     def walked(self):
-        """A pair and, through doors that exist from both of its poses, that to which they lead."""
-        first = pair = self.pair("from")
+        """The pair from which a walk begins, and that at its end."""
+        start = pair = self.pair("from P Q")
         while self.lines.next_is("door"):
-            (door,) = self.lines.numbers("door", 1)
+            (door,) = self.lines.take("door I")
             pair = self.behind(pair, door)
-            if None in pair:
-                self.lines.wrong("no such door")
-        return first, pair
+            self.lines.need(None not in pair, "no such door")
+        return start, pair
 
     def distinguishable(self):
-        walks = 0
-        while self.lines.next_is("from") or not walks:
+        more = True
+        while more:
             _, pair = self.walked()
-            one, other = self.percepts(pair)
-            if one == other:
-                self.lines.wrong("the percepts do not differ")
-            walks += 1
+            self.lines.need(not self.alike(pair), "the percepts do not differ")
+            more = self.lines.next_is("from")
 
     def isomorphic(self):
-        first, second = self.worlds
-        image = {}
+        (first, second), image = self.worlds, {}
         while self.lines.next_is("image"):
-            dart, other = self.pair("image")
-            if dart in image:
-                self.lines.wrong("a second image of one dart")
+            dart, other = self.pair("image P Q")
+            self.lines.need(dart not in image, "a second image of one dart")
             image[dart] = other
-        if len(image) != len(first.darts) or sorted(image.values()) != list(second.darts):
-            self.lines.wrong("no bijection")
-        for dart in first.darts:
-            if image[first.opposite[dart]] != second.opposite[image[dart]]:
-                self.lines.wrong(f"the edge of {dart} is not kept")
-            if image[first.turned(dart, 1)] != second.turned(image[dart], 1):
-                self.lines.wrong(f"the clockwise order behind {dart} is not kept")
+        bijection = len(image) == len(first.darts) and sorted(image.values()) == list(second.darts)
+        self.lines.need(bijection, "no bijection")
+        for dart, other in image.items():
+            edge, order = image[first.opposite[dart]], image[first.turned(dart, 1)]
+            self.lines.need(edge == second.opposite[other], f"the edge of {dart} is not kept")
+            self.lines.need(order == second.turned(other, 1), f"the order behind {dart} is not kept")
 
     def not_isomorphic(self):
-        covered, always = set(), None
-        while self.lines.next_is("from"):
+        covered = set()
+        while len(covered) < len(self.worlds[1].darts):
             start, pair = self.walked()
-            always = start[0] if always is None else always
-            if start[0] != always or start[1] in covered:
-                self.lines.wrong("another dart of the first world, or a dart of the second one again")
-            covered.add(start[1])
-            one, other = (world.percept("directional", *darts) for world, *darts in zip(self.worlds, start, pair))
-            if one == other:
-                self.lines.wrong("the percepts do not differ")
-        if len(covered) != len(self.worlds[1].darts):
-            self.lines.wrong("not each dart of the second world is covered")
+            self.lines.need(start not in covered, "a second walk from these poses")
+            covered.add(start)
+            markers = zip(self.worlds, pair, start)
+            one, other = (world.percept("directional", pose, facing) for world, pose, facing in markers)
+            self.lines.need(one != other, "the percepts do not differ")
+        always = len({dart for dart, _ in covered}) == 1
+        self.lines.need(always, "not always the same dart of the first world")
+
+    def onward(self, visit, alternative, pose):
+        """The poses with which a robot that has this alternative can come to the next vertex.
+
+        Each stands behind what has to be chosen for it: a door, (I,), or nothing, ().
+        """
+        (world,) = self.worlds
+        if alternative is None:
+            return {(): world.opposite[pose] if self.visits[visit][0] == "back" else pose}
+        percept, door = alternative
+        if percept != world.percept(self.marker, pose):
+            return {}
+        if door != "any":
+            return {(): world.behind(pose, door)}
+        if visit == len(self.visits) - 1:
+            return {(): pose}
+        return {(door,): world.behind(pose, door) for door in range(world.degree(pose))}
+
+    def fits(self):
+        pose = self.pose(*self.lines.take("from D"))
+        for visit, (_, alternatives) in enumerate(self.visits):
+            number, *door = self.lines.take("choose K...")
+            self.lines.need(number < len(alternatives), "no such alternative")
+            poses = self.onward(visit, alternatives[number], pose)
+            self.lines.need(tuple(door) in poses, "the robot does not make this visit so")
+            pose = poses[tuple(door)]
+
+    def misfits(self):
+        poses = set(self.poses())
+        for visit, (_, alternatives) in enumerate(self.visits):
+            onward = [self.onward(visit, alternative, pose) for alternative in alternatives for pose in poses]
+            poses = {pose for behind in onward for pose in behind.values()}
+        self.lines.need(not poses, "a robot makes these visits")
+
+
+def proved(file):
+    """The kind of each claim of a file, once it is proved."""
+    with open(file, encoding="latin-1", newline="\n") as opened:
+        lines = Lines(opened)
+    more = True
+    while more:
+        yield from Proof(lines).claims()
+        more = lines.left()
 
 
 def main(arguments):
@@ -440,21 +465,15 @@ def main(arguments):
         sys.exit(__doc__)
     accepted = True
     for file in files:
-        lines = Lines(b"")
         try:
-            with open(file, "rb") as opened:
-                lines = Lines(opened.read())
-            proofs = 0
-            while not proofs or lines.left():
-                for kind in Proof(lines).claims():
-                    if not verdicts:
-                        print(f"proved: {kind}")
-                proofs += 1
+            for kind in proved(file):
+                if not verdicts:
+                    print(f"proved: {kind}")
             if verdicts:
                 print(f"accepted {file}")
-        except (Wrong, OSError) as error:
+        except (ProofError, OSError) as error:
             accepted = False
-            print(f"refused {file}" if verdicts else f"{file}:{lines.number}: not proved: {error}")
+            print(f"refused {file}" if verdicts else f"{file}:{error}")
     return 0 if accepted else 1
 
 
