@@ -19,6 +19,7 @@ mod steps;
 mod walk;
 mod walks;
 mod ways;
+mod with_movable;
 
 use std::cmp::Reverse;
 
@@ -39,6 +40,7 @@ pub use recovery::{MappedWorld, RecoveryConfig, Relocate};
 use settle::Hypotheses;
 pub use walks::{ArrivalMeasurement, EarlierWalk};
 use ways::Ways;
+pub use with_movable::{WithMovableRun, WithMovableStep};
 
 /// What the robot does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
