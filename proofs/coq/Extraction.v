@@ -20,6 +20,8 @@ Definition movable_mapping bound seen := deeds_of (@handles _) (MovableMarker.mo
 (** The folding explorer with given actions, with a limit on their number. Its ways are not longer than necessary, and
     its tests become strict when those of the running explorer do. *)
 Definition folding_mapping bound seen := guided_explorer no_longer usual_patience bound seen.
+(** The same with strict tests only. *)
+Definition strict_folding_mapping bound seen := guided_explorer no_longer (fun=> 0) bound seen.
 
 (** The path through the map that a test takes from a dart to the marker. *)
 Definition path_to_marker S d : seq nat := to_root S (tree_from S 0) (vertex S d).
@@ -27,6 +29,6 @@ Definition path_to_marker S d : seq nat := to_root S (tree_from S 0) (vertex S d
 Extraction Language OCaml.
 (* Extraction warns that it opens proofs of comparisons; no value depends on them. *)
 Set Warnings "-extraction-opaque-accessed,-extraction-reserved-identifier".
-Extraction "mappings.ml" directional_mapping movable_mapping folding_mapping
+Extraction "mappings.ml" directional_mapping movable_mapping folding_mapping strict_folding_mapping
   (* From these the walks of the running explorer are translated into actions. *)
   passages from_dart to_dart stands_for dart_in_trail far_end predicts pose_in_map path_to_marker.

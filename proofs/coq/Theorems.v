@@ -505,13 +505,15 @@ Qed.
 Theorem isomorphic_starts_bisimilar (number : nat) (heading : bool) (V W : start) :
   isomorphic_starts V W ->
   [/\ bisimilar (with_aid (markers_alike number)) V W, bisimilar (with_aid (markers_distinct number)) V W,
-      bisimilar (with_aid movable_directional) V W, bisimilar (with_aid (team heading number)) V W
+      bisimilar (with_aid movable_directional) V W /\ bisimilar (with_aid directional_and_movable) V W,
+      bisimilar (with_aid (team heading number)) V W
     & bisimilar (with_aid (string number)) V W].
 Proof.
-split; apply: AidIsomorphisms.isomorphic_bisimilar => //.
+split; try split; apply: AidIsomorphisms.isomorphic_bisimilar => //.
 - exact: AidIsomorphisms.alike_keeps_isomorphisms.
 - exact: AidIsomorphisms.distinct_keeps_isomorphisms.
 - exact: AidIsomorphisms.directional_keeps_isomorphisms.
+- exact: AidIsomorphisms.directional_and_movable_keeps_isomorphisms.
 - exact: AidIsomorphisms.team_keeps_isomorphisms.
 exact: AidIsomorphisms.string_keeps_isomorphisms.
 Qed.
@@ -562,11 +564,14 @@ by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
 Qed.
 
 (** A directional marker that can be carried has a front: if it stays where it is at the start, it shows what one
-    shows that cannot be carried. So have other robots that show their heading, if there is at least one. Paper:
-    beyond 2.3. *)
+    shows that cannot be carried. So has one that stays beside a movable marker, and so have other robots that show
+    their heading, if there is at least one. Paper: beyond 2.3. *)
 Theorem aids_with_a_front (others : nat) :
-  has_front movable_directional /\ (0 < others -> has_front (team true others)).
-Proof. by split; [apply: Fronts.movable_directional_front | apply: Fronts.team_front]. Qed.
+  [/\ has_front movable_directional, has_front directional_and_movable & 0 < others -> has_front (team true others)].
+Proof.
+split; [exact: Fronts.movable_directional_front | exact: Fronts.directional_and_movable_front |].
+exact: Fronts.team_front.
+Qed.
 
 (** Such an aid is as good as a directional marker: any robot with a directional marker can be simulated, if it takes
     only doors that exist. The simulating robot gives the same answer in the same pose, does only what is possible,
@@ -990,13 +995,14 @@ Proof. exact: Tours.one_false_percept. Qed.
 
 (** * What is extracted *)
 
-(** A robot that does what is extracted from a program, with the default choices, takes the decisions of the robot that obeys
-    the program: one that only moves, and one with a movable marker. *)
+(** A robot that does what is extracted from a program, with the default choices, takes the decisions of the robot
+    that obeys the program: one that only moves, and one with a movable marker. *)
 Theorem extracted_obeys A :
   (forall (p : Program.program A) (past : seq percept),
      decides id 0 0 (deeds_of (@leaves A) p) past = obey p past) /\
   (forall (p : program_of handling_action A) (past : seq percept),
-     decides MovableMarker.LeaveBy MovableMarker.PickUp MovableMarker.Drop (deeds_of (@handles A) p) past = obey p past).
+     decides MovableMarker.LeaveBy MovableMarker.PickUp MovableMarker.Drop (deeds_of (@handles A) p) past =
+     obey p past).
 Proof. by split; [apply: Deeds.decides_moves | apply: Deeds.decides_handles]. Qed.
 
 (** And whichever of the listed options it chooses by its number, it is an allowed one. *)

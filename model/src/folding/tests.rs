@@ -421,6 +421,9 @@ proptest! {
             }
         }
         used.restart(later.0[0]).unwrap();
+        let mut closed = 0;
+        used.for_each_closed_dart(|_, _| closed += 1);
+        prop_assert_eq!(closed, 0);
         let mut new = FoldedTrail::new(later.0[0]).unwrap();
         for (&door, &percept) in later.1.iter().zip(&later.0[1..]) {
             used.step(door, percept).unwrap();

@@ -198,30 +198,19 @@ impl FoldingRun {
         forced == Ok(true) || InjectedFlaw::ProofByOtherWalk.is_present()
     }
 
-    /// The walk from a pending place along the way to the marker that the first hypothesis predicts, as
-    /// in Algorithm 1.
+    /// The walk over the edge of a pending place, and along the way to the marker that the first hypothesis predicts, as in
+    /// Algorithm 1.
     fn strict_test(&mut self, pending: Pending) -> Option<HypothesisTest> {
-        let Pending { edge, far, .. } = pending;
         let all = mem::take(&mut self.unexplored);
         let hypothesis = all.iter().copied().find(|&dart| self.is_alive(pending, dart));
         self.unexplored = all;
         let hypothesis = hypothesis?;
         let distance = self.to_marker.hops(self.map().vertex(hypothesis));
-        let (mut pose, mut believed) = (far, hypothesis);
-        loop {
-            let cost = self.to_marker.hops(self.map().vertex(believed)) as usize;
-            let (door, entry) = self.to_marker.toward_root(self.map(), believed)?;
-            let open = self.trail.behind(pose, door);
-            match self.trail.opposite(open) {
-                None => {
-                    let approach = self.from_robot.moves_to(&self.trail, open);
-                    let test =
-                        HypothesisTest { cost, distance, approach, hypothesis, open, edge, entry };
-                    return Some(test);
-                }
-                Some(next) => (pose, believed) = (next, entry),
-            }
-        }
+        let edge = pending.edge;
+        let open = self.in_trail[edge.at()];
+        let approach = self.from_robot.moves_to(&self.trail, open);
+        let (cost, entry) = (distance as usize, hypothesis);
+        Some(HypothesisTest { cost, distance, approach, hypothesis, open, edge, entry })
     }
 
     fn find_ways_to_marker(&mut self) {

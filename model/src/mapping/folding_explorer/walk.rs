@@ -49,7 +49,8 @@ impl FoldingRun {
     ) -> Mapped<W, bool> {
         let HypothesisTest { edge, hypothesis, cost, open, entry, .. } = test;
         self.report(FoldingEvent::Testing { edge, hypothesis, cost }, world);
-        let mut before = self.trail.vertex_count() + 1;
+        let is_new = self.trail.opposite(open).is_none();
+        let mut before = self.trail.vertex_count() + usize::from(is_new);
         let mut perceived = self.take_open(open, world)?;
         let mut believed = entry;
         let is_confirmed = loop {
