@@ -193,4 +193,152 @@ elim: steps k part => [|s steps IH] k part known /=; first by case=> <-.
 by case afterE: (after _ _ _ _) => [k1|] // /IH; apply; apply: knows_after afterE.
 Qed.
 
+(** ** A complete trail *)
+
+(** Each dart of the walk is known to be one with an end of a move. *)
+Definition covers (k : knowledge) := forall v i, is_visit v ->
+  exists p x y, ends_of w p = Some (x, y) /\ name_of w k (v, i) = name_of w k x.
+
+Let is_end k (x : N * N) := exists p y z, ends_of w p = Some (y, z) /\ x = name_of w k y.
+
+Lemma names_of_endsP k ends u ds :
+  (forall m, m < size ds -> find (door_at w) (N.of_nat (N.to_nat u + m)) = Some (nth N0 ds m)) ->
+  (forall r a, has_entry (odflt empty (find ends r)) a -> is_end k (r, a)) ->
+  forall r a, has_entry (odflt empty (find (names_of_ends w k ends u ds) r)) a -> is_end k (r, a).
+Proof.
+have adds ends' x : is_end k (name_of w k x) ->
+    (forall r a, has_entry (odflt empty (find ends' r)) a -> is_end k (r, a)) ->
+    forall r a,
+      has_entry (odflt empty (find (let: (visit, i) := name_of w k x in
+                                    put ends' visit (put (odflt empty (find ends' visit)) i tt)) r)) a ->
+      is_end k (r, a).
+  move=> x_end ends'_ends r a; move: x_end; case: (name_of w k x) => s b x_end.
+  rewrite find_put; case: eqP => [->|_] /=; last exact: ends'_ends.
+  rewrite /has_entry find_put; case: eqP => [-> //|_]; exact: ends'_ends.
+elim: ds u ends => [|i ds IH] u ends //= door_atE ends_ends; apply: IH => [m lt|].
+  rewrite to_natS addSnnS; exact: (door_atE m.+1).
+have doorE : find (door_at w) u = Some i by rewrite -(door_atE 0) // addn0 Nnat.N2Nat.id.
+apply: (adds); first by exists (Against u), (N.succ u, N0), (u, i); rewrite /= doorE.
+by apply: (adds) ends_ends; exists (Along u), (u, i), (N.succ u, N0); rewrite /= doorE.
+Qed.
+
+Lemma complete_covers k : knows k -> complete w k -> covers k.
+Proof.
+move=> known /all_belowP covered_all v i v_in.
+have size_visits : N.to_nat (visits w) = (size doors).+1 by rewrite wE lengthE size_seen.
+have covered_visit u : is_visit u -> covered w k (ends_fuel w) (names_of_ends w k empty 0 (door_lines (walk_of w))) u.
+  by move=> u_in; apply: covered_all; rewrite size_visits ltnS.
+set ends := names_of_ends _ _ _ _ _ in covered_visit.
+have [r_in _] := known v v_in; have [_ lt _] := @name_ofP k known (v, i) v_in; move: lt; rewrite name_ofE /=.
+set r := (label k v).1; set a := N.modulo _ _ => lt.
+have := covered_visit v v_in; rewrite /covered -/r; case: ifP => // _; case: eqP => // stands _.
+have := covered_visit r r_in; rewrite /covered !stands eqxx; case: ifP => // _.
+move/all_belowP/(_ a lt) => in_ends; suff [p [x [y [pE xE]]]] : is_end k (r, a) by exists p, x, y.
+apply: names_of_endsP in_ends => [m m_lt|r' a']; last by rewrite find_empty /has_entry find_empty.
+rewrite wE in m_lt *; rewrite (find_table_of _ _ N0) !Nnat.Nat2N.id.
+by rewrite m_lt.
+Qed.
+
+Lemma covers_opposite k v i : knows k -> covers k -> is_visit v ->
+  exists z, is_visit z.1 /\ opposite (walked_dart (v, i)) = walked_dart z.
+Proof.
+move=> known all_covered v_in; have [p [x [z [pE nameE]]]] := all_covered v i v_in.
+have [x_in z_in xz] := ends_ofP pE; exists z; split=> //.
+by rewrite (eq_name_of known _ x_in nameE).
+Qed.
+
+(** So every dart is one of the walk. *)
+Lemma covers_all k : knows k -> covers k -> forall d : V, exists2 v, is_visit v & same_vertex (visit_pose v) d.
+Proof.
+move=> known all_covered d; have [ds <-] := connected_walk q d.
+elim/last_ind: ds => [|ds i [v v_in /same_vertexP[j dE]]].
+  by exists N0 => //; rewrite /visit_pose take0 same_vertex_refl.
+rewrite walk_rcons dE /traverse -turnD.
+have [[u j'] [u_in uE]] := covers_opposite (N.of_nat (j + i)) known all_covered v_in.
+exists u => //; move: uE; rewrite /walked_dart /= Nnat.Nat2N.id => ->.
+exact: same_vertex_turn.
+Qed.
+
+(** ** Contradictions *)
+
+Lemma one_vertexP k a b : knows k -> is_visit a -> is_visit b -> (label k a).1 = (label k b).1 ->
+  same_vertex (visit_pose a) (visit_pose b).
+Proof.
+move=> known /known[_ ->] /known[_ ->] one; rewrite /walked_dart one.
+apply: (same_vertex_trans (q := visit_pose (label k b).1)); last exact: same_vertex_turn.
+by rewrite same_vertex_sym same_vertex_turn.
+Qed.
+
+Lemma can_seeP v : is_visit v -> can_see marker (degree_at w v) (sighting_at w v).
+Proof.
+move=> v_in; have := sighting_atE v_in; have degreeE := degree_atE v_in.
+case: (sighting_at w v) => [||i|||||||]; case: marker => //=; try by rewrite /undirected /directional
+  /undirected_edge /directed_edge /two_identical /two_distinct /two_looks;
+  do ?case: ifP => //; do ?case: (same_vertex _ _).
+rewrite /directional; case: ifP => // near [iE]; rewrite ltbP iE degreeE.
+exact: findex_max.
+Qed.
+
+Lemma points_elsewhereF k a b : marker = WordDirectional -> knows k -> is_visit a -> is_visit b ->
+  (label k a).1 = (label k b).1 -> points_elsewhere w k a b = false.
+Proof.
+move=> markerE known a_in b_in one; have near := one_vertexP known a_in b_in one; rewrite /points_elsewhere.
+have := sighting_atE a_in; have := sighting_atE b_in; rewrite markerE /= /directional.
+case: (sighting_at w a) => //= i; move=> b_sees; case: ifP => // a_near [iE].
+have b_near : same_vertex (visit_pose b) (facing V).
+  by apply: same_vertex_trans a_near; rewrite same_vertex_sym.
+rewrite b_near in b_sees; case/sighting_of_pointing: b_sees => j -> jE; apply/negbTE; rewrite negbK.
+have dartE v n : N.to_nat n = findex clockwise (visit_pose v) (facing V) -> same_vertex (visit_pose v) (facing V) ->
+    walked_dart (v, n) = facing V.
+  by move=> nE v_near; rewrite /walked_dart /= nE /turn iter_findex.
+have := name_of_inj known (x := (a, i)) (y := (b, j)) a_in b_in; rewrite !dartE // => /(_ erefl).
+rewrite !name_ofE /two_doors /= one eqxx /= => /norP[/negbNE/eqP-> _].
+exact: eqxx.
+Qed.
+
+Lemma is_pointing_seen v i : marker_of marker (visit_pose v) = Pointing i -> is_visit v ->
+  has is_pointing (see_lines text).
+Proof.
+move=> pointing v_in; have := sighting_atE v_in; rewrite pointing => /sighting_of_pointing[n].
+rewrite /sighting_at wE (find_table_of _ _ (N0, WordNothing)) size_seen ltnS -/(is_visit v) v_in.
+case nthE: (nth _ _ _) => [g s] sE _; apply/(has_nthP (N0, WordNothing)).
+by exists (N.to_nat v); rewrite ?size_seen ?ltnS // nthE sE.
+Qed.
+
+Lemma contradicted k c : knows k -> passable q doors -> not_contradictory marker w k c <> None.
+Proof.
+move=> known doors_exist; case: c => [s|a b|m|a|m|] /=.
+- case showsE: (shows _ _ _ _) => [[x y]|] //; have [x_in y_in one] := showsP known showsE.
+  by rewrite (name_of_inj known x_in y_in one).
+- case: ifP => // /negbFE/visited_visit a_in; case: ifP => // /negbFE/visited_visit b_in.
+  case: eqP => // one; have near := one_vertexP known a_in b_in one.
+  have same_at : marker_of marker (visit_pose a) = marker_of marker (visit_pose b) ->
+      same_sighting (sighting_at w a) (sighting_at w b).
+    by rewrite same_sightingP !sighting_atE // => ->.
+  have near_eq (d : V) : same_vertex (visit_pose a) d = same_vertex (visit_pose b) d.
+    apply/idP/idP => [a_d|b_d]; last exact: same_vertex_trans near b_d.
+    by apply: same_vertex_trans a_d; rewrite same_vertex_sym.
+  case markerE: marker; rewrite ?(points_elsewhereF markerE) //; try
+    (rewrite same_at // markerE /= /no_marker /undirected /two_identical /two_distinct /two_looks ?near_eq //).
+  + case: eqP => //= names; rewrite same_at //.
+    by have := eq_name_of known (x := (a, N0)) (y := (b, N0)) a_in b_in names; rewrite /walked_dart /= => ->.
+  case: eqP => //= names; rewrite same_at //.
+  by have := eq_name_of known (x := (a, N0)) (y := (b, N0)) a_in b_in names; rewrite /walked_dart /= => ->.
+- case doorE: (find _ m) => [i|] //; have [lt _ poseE] := ends_of_along doorE.
+  case: eqP => // names; have := eq_name_of known (x := (m, i)) (y := (N.succ m, N0)) (ltnW lt) _ names.
+  rewrite /is_visit /= to_natS => /(_ lt); rewrite {2}/walked_dart /= poseE => /esym/eqP.
+  by rewrite (negbTE (opposite_neq _)).
+- case: ifP => // /negbFE/visited_visit a_in; rewrite can_seeP // orbF; case: eqP => // degree0.
+  by have := degree_at_gt0 a_in; rewrite degree0.
+- case doorE: (find _ m) => [i|] //; have [lt nthE _] := ends_of_along doorE.
+  have m_in : is_visit m := ltnW lt.
+  have := passable_nth doors_exist lt; rewrite nthE -/(visit_pose m) -degree_atE // ltnNge -lebP.
+  by case: ifP.
+case markerE: marker => //; case pointing: (has _ _) => //; case completeE: (complete w k) => // _.
+have [v v_in near] := covers_all known (complete_covers known completeE) (facing V).
+have : marker_of marker (visit_pose v) = Pointing (findex clockwise (visit_pose v) (facing V)).
+  by rewrite markerE /= /directional near.
+by move/is_pointing_seen/(_ v_in); move: pointing; rewrite wE => /= ->.
+Qed.
+
 End Steps.
