@@ -1,7 +1,8 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Markers.v], [Aids.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
-    terms; the proofs are in the other files. *)
+    [MovableMarker.v], [Markers.v], [Aids.v], [Folding.v], [Certificate.v], [FoldingExplorer.v], [Verdicts.v] and
+    [Checker.v] define the terms; the proofs are in the other files. *)
 
+From Coq Require BinNums.
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions
   Markers Aids.
@@ -10,7 +11,7 @@ From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
   Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect GivenActionsCorrect CertificateNeeded
   CertificateAttained AidIsomorphisms AidsAtVertices Imitation Fronts Strings
-  HeldMarkers RoundTeams.
+  HeldMarkers RoundTeams Verdicts Checker CheckerWorlds CheckerSound.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Figures(corridor_a, corridor_b, planar_a, planar_b).
@@ -18,6 +19,8 @@ Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, p
 Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
 Import MovableMarker(handling_action, handling, can_handle, movable).
+Import Verdicts(world_text, setting, claim, describes, claim_true).
+Import Checker(wrong_world, tables_of, prepare, check, Accepted).
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -984,3 +987,23 @@ Theorem one_false_percept :
   [/\ complete [:: 0] (sees chain_2 [:: 0]), ~ isomorphic chain_2 chain_3
     & false_percepts (sees chain_3 [:: 0]) (sees chain_2 [:: 0]) = 1].
 Proof. exact: Tours.one_false_percept. Qed.
+
+(** * Proofs of verdicts *)
+
+(** What the checker of proofs accepts is true: an accepted claim of each kind is true of all worlds of which it
+    speaks. The page on proofs of verdicts, [docs/proofs-of-verdicts.md], says what is claimed. Paper: beyond 2.3. *)
+Theorem checker_sound (s : setting) (c : claim) : check (prepare s) c = Accepted -> claim_true s c.
+Proof. exact: CheckerSound.checker_sound. Qed.
+
+(** Where it finds nothing wrong with the text of a world, the text describes a start, and only one, up to
+    isomorphism. Paper: beyond 2.3. *)
+Theorem accepted_world (t : world_text) :
+  wrong_world t (tables_of t) = None ->
+  (exists (W : start) (number : W -> BinNums.N), describes t number) /\
+  forall (V W : start) (number : V -> BinNums.N) (number' : W -> BinNums.N),
+    describes t number -> describes t number' ->
+    exists f : V -> W, [/\ isomorphism f, f (facing V) = facing W & forall d, number' (f d) = number d].
+Proof.
+move=> right; split; first exact: CheckerWorlds.world_exists.
+by move=> V W number number'; apply: CheckerWorlds.described_once.
+Qed.
