@@ -62,22 +62,18 @@ Qed.
 Lemma has_entryP A (t : table A) n : reflect (exists a, find t n = Some a) (has_entry t n).
 Proof. by rewrite /has_entry; case: (find t n) => [a|]; constructor; [exists a | case]. Qed.
 
-Lemma find_table_of A (s : seq A) n a x0 :
-  find (table_of s) n = Some a -> N.to_nat n < size s /\ nth x0 s (N.to_nat n) = a.
+Lemma find_table_of A (s : seq A) n x0 :
+  find (table_of s) n = if N.to_nat n < size s then Some (nth x0 s (N.to_nat n)) else None.
 Proof.
-rewrite /table_of.
-suff: forall (t : table A) (i : N),
-    find (foldl (fun t_n b => (put t_n.1 t_n.2 b, N.succ t_n.2)) (t, i) s).1 n = Some a ->
-    find t n = Some a \/
-    [/\ N.to_nat i <= N.to_nat n, N.to_nat n < N.to_nat i + size s & nth x0 s (N.to_nat n - N.to_nat i) = a].
-  move=> /(_ empty N0) H /H; rewrite find_empty => -[//|[_]].
-  by rewrite add0n subn0.
-elim: s => [|b s IH] t i /=; first by left.
-case/IH => [|[le lt nthE]]; last first.
-  right; move: le lt nthE; rewrite to_natS => le; rewrite addSnnS => lt.
-  by split; rewrite ?(ltnW le) // -(subnSK le).
-rewrite find_put; case: eqP => [-> [<-]|_]; last by left.
-by right; rewrite subnn addnS leqnn ltnS leq_addr.
+rewrite /table_of; suff -> : forall (t : table A) (i : N),
+    find (foldl (fun t_n b => (put t_n.1 t_n.2 b, N.succ t_n.2)) (t, i) s).1 n =
+    if N.to_nat i <= N.to_nat n < N.to_nat i + size s then Some (nth x0 s (N.to_nat n - N.to_nat i)) else find t n.
+  by rewrite find_empty leq0n add0n subn0.
+elim: s => [|b s IH] t i /=; first by rewrite addn0 ltnNge andbN.
+rewrite IH to_natS find_put eqbP addSnnS.
+case: (ltngtP (N.to_nat i) (N.to_nat n)) => [lt|//|->].
+  by case: ifP => // _; rewrite -(subnSK lt).
+by rewrite subnn addnS ltnS leq_addr.
 Qed.
 
 Lemma lengthE A (s : seq A) : N.to_nat (length s) = size s.

@@ -181,6 +181,31 @@ Qed.
 
 End World.
 
+(** And it is the only one, apart from what its darts are. *)
+Lemma described_once t (V W : start) (number : V -> N) (number' : W -> N) :
+  wrong_world t (tables_of t) = None -> describes t number -> describes t number' ->
+  exists f : V -> W, [/\ isomorphism f, f (facing V) = facing W & forall d, number' (f d) = number d].
+Proof.
+move=> right; have [_ T_right _] := accepted_world right.
+move=> /fits_described/(_ T_right) V_fits /fits_described/(_ T_right) W_fits.
+have also (V' W' : start) (num : V' -> N) (num' : W' -> N) :
+    fits (tables_of t) num -> fits (tables_of t) num' -> forall d, exists e, num' e == num d.
+  move=> fits_num fits_num' d; have /(dart_listP fits_num) : exists d', num d' = num d by exists d.
+  by case/(dart_listP fits_num')=> e eE; exists e; apply/eqP.
+have onto := also _ _ _ _ W_fits V_fits; have {}also := also _ _ _ _ V_fits W_fits.
+pose f d := xchoose (also d); have fE d : number' (f d) = number d := eqP (xchooseP (also d)).
+pose g e := xchoose (onto e); have gE e : number (g e) = number' e := eqP (xchooseP (onto e)).
+have fP d e : number' e = number d -> f d = e by rewrite -fE => /(number_inj W_fits).
+exists f; split=> //; last by apply: fP; rewrite -(facing_dartE V_fits) -(facing_dartE W_fits).
+split=> [|d|d].
+- exists g => [d|e]; last by apply: fP; rewrite gE.
+  by apply: (number_inj V_fits); rewrite gE fE.
+- apply: fP; have := find_opposite W_fits (f d).
+  by rewrite fE (find_opposite V_fits) => -[].
+apply: fP; have := find_next W_fits (f d).
+by rewrite fE (find_next V_fits) => -[].
+Qed.
+
 (** What is shown with the tables of a world is true in it. *)
 Lemma in_worldP t (claimed : forall W : start, (W -> N) -> Prop) :
   wrong_world t (tables_of t) = None ->

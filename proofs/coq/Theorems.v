@@ -1,7 +1,8 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Markers.v], [Aids.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
-    terms; the proofs are in the other files. *)
+    [MovableMarker.v], [Markers.v], [Aids.v], [Folding.v], [Certificate.v], [FoldingExplorer.v], [Verdicts.v] and
+    [Checker.v] define the terms; the proofs are in the other files. *)
 
+From Coq Require BinNums.
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions
   Markers Aids.
@@ -10,7 +11,7 @@ From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
   Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect GivenActionsCorrect CertificateNeeded
   CertificateAttained AidIsomorphisms AidsAtVertices Imitation Fronts Strings
-  HeldMarkers RoundTeams Plane Deeds.
+  HeldMarkers RoundTeams Plane Deeds Verdicts Checker CheckerWorlds CheckerSound.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Figures(corridor_a, corridor_b, planar_a, planar_b).
@@ -20,6 +21,8 @@ Import Embedding(embeds).
 Import MovableMarker(handling_action, handling, can_handle, movable).
 Import Plane(in_the_plane).
 Import Deeds(deeds_of, decides, leaves, handles, chooses).
+Import Verdicts(world_text, setting, claim, describes, claim_true).
+Import Checker(wrong_world, tables_of, prepare, check, Accepted).
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -1010,3 +1013,23 @@ Theorem extracted_choices A (T : eqType) (xs : seq T) (default : T) (go : T -> D
   xs != [::] -> chooses (among xs) default go = Deeds.Chooses n next -> i < n ->
   exists2 x, allows (among xs) x & next (Some i) = go x.
 Proof. exact: Deeds.chooses_listed. Qed.
+
+(** * Proofs of verdicts *)
+
+(** What the checker of proofs accepts is true: an accepted claim of each kind is true of all worlds of which it
+    speaks. The page on proofs of verdicts, [docs/proofs-of-verdicts.md], says what is claimed. Paper: beyond 2.3. *)
+Theorem checker_sound (s : setting) (c : claim) : check (prepare s) c = Accepted -> claim_true s c.
+Proof. exact: CheckerSound.checker_sound. Qed.
+
+(** Where it finds nothing wrong with the text of a world, the text describes a start, and only one, up to
+    isomorphism. Paper: beyond 2.3. *)
+Theorem accepted_world (t : world_text) :
+  wrong_world t (tables_of t) = None ->
+  (exists (W : start) (number : W -> BinNums.N), describes t number) /\
+  forall (V W : start) (number : V -> BinNums.N) (number' : W -> BinNums.N),
+    describes t number -> describes t number' ->
+    exists f : V -> W, [/\ isomorphism f, f (facing V) = facing W & forall d, number' (f d) = number d].
+Proof.
+move=> right; split; first exact: CheckerWorlds.world_exists.
+by move=> V W number number'; apply: CheckerWorlds.described_once.
+Qed.

@@ -8,7 +8,8 @@
 
 open Checker
 
-exception Malformed of int * string
+(* The number of a line, and what is wrong there. *)
+exception Wrong of int * string
 
 (* Numbers *)
 
@@ -19,9 +20,9 @@ let int = function N0 -> 0 | Npos p -> int_of p
 
 (* Lines *)
 
-type reader = { channel : in_channel; mutable line : int; mutable words : string list option; mutable last : int }
+type reader = { channel : in_channel; mutable line : int; mutable words : string list option }
 
-let malformed r what = raise (Malformed (r.line, what))
+let malformed r what = raise (Wrong (r.line, "malformed: " ^ what))
 
 (* Goes to the next line that is no remark; at the end of the file there are no words. *)
 let rec advance r =
@@ -31,11 +32,10 @@ let rec advance r =
   | text ->
       r.line <- r.line + 1;
       if pos_in r.channel - before = String.length text then malformed r "the last line does not end";
-      if text <> "" && text.[0] = '#' then advance r
-      else r.words <- Some (String.split_on_char ' ' text)
+      if text <> "" && text.[0] = '#' then advance r else r.words <- Some (String.split_on_char ' ' text)
 
 (* The number of a line that was read, when the reader goes on to the next. *)
-let taken r = r.last <- r.line; advance r; r.last
+let taken r = let at = r.line in advance r; at
 
 let number_of r word =
   let digits = String.length word in
@@ -47,39 +47,31 @@ let number_of r word =
 
 let numbers r words = List.rev (List.rev_map (number_of r) words)
 
-let expect r words =
-  if r.words <> Some words then malformed r (Printf.sprintf "%S is expected here" (String.concat " " words));
-  ignore (taken r)
+let read_words read r = match r.words with Some words -> read words | None -> None
 
-(* The lines as long as they are of one kind, each with its number. *)
-let lines r line =
+(* A line, with its number, as a function reads its words; or all lines that it reads. *)
+let line r what read =
+  match read_words read r with Some item -> (item, taken r) | None -> malformed r (what ^ " is expected here")
+
+let lines r read =
   let rec go found =
-    match r.words with
-    | None -> List.rev found
-    | Some words -> (
-        match line words with
-        | None -> List.rev found
-        | Some item -> let at = taken r in go ((item, at) :: found))
+    match read_words read r with Some item -> go ((item, taken r) :: found) | None -> List.rev found
   in
   go []
 
-let items found = List.rev (List.rev_map (fun (item, _) -> item) found)
-let places found = Array.of_list (List.rev (List.rev_map (fun (_, at) -> at) found))
+let expect r text = ignore (line r text (fun words -> if String.concat " " words = text then Some () else None))
+let items found = List.rev (List.rev_map fst found)
+let places found = Array.of_list (List.rev (List.rev_map snd found))
 
 (* The parts of a proof *)
 
 let world r =
   let at = taken r in
-  let vertices =
-    lines r (function "vertex" :: (_ :: _ as darts) -> Some (numbers r darts) | _ -> None) in
-  let edges =
-    lines r (function [ "edge"; d; e ] -> Some (number_of r d, number_of r e) | _ -> None) in
-  match r.words with
-  | Some [ "facing"; d ] ->
-      let facing_line = number_of r d in
-      ignore (taken r);
-      ({ vertex_lines = items vertices; edge_lines = items edges; facing_line }, at)
-  | _ -> malformed r "a world has the lines vertex D..., edge D E and facing D"
+  let vertices = lines r (function "vertex" :: (_ :: _ as darts) -> Some (numbers r darts) | _ -> None) in
+  let edges = lines r (function [ "edge"; d; e ] -> Some (number_of r d, number_of r e) | _ -> None) in
+  let facing_line, _ =
+    line r "vertex D..., edge D E or facing D" (function [ "facing"; d ] -> Some (number_of r d) | _ -> None) in
+  ({ vertex_lines = items vertices; edge_lines = items edges; facing_line }, at)
 
 let markers =
   [ ("none", WordNone); ("undirected", WordUndirected); ("directional", WordDirectional);
@@ -90,25 +82,24 @@ let sightings =
   [ ("nothing", WordNothing); ("lying", WordLying); ("two", WordTwo); ("first", WordFirst); ("second", WordSecond);
     ("both", WordBoth); ("passed", WordPassed); ("along", WordAlong); ("against", WordAgainst) ]
 
+let see r = function
+  | [ "see"; degree; "pointing"; i ] -> Some (number_of r degree, WordPointing (number_of r i))
+  | [ "see"; degree; word ] when List.mem_assoc word sightings -> Some (number_of r degree, List.assoc word sightings)
+  | _ -> None
+
+let door r = function [ "door"; i ] -> Some (number_of r i) | _ -> None
+
 let walk r =
   ignore (taken r);
-  let rec go seen doors places =
-    let degree, sighting =
-      match r.words with
-      | Some [ "see"; degree; "pointing"; i ] -> (number_of r degree, WordPointing (number_of r i))
-      | Some [ "see"; degree; word ] when List.mem_assoc word sightings ->
-          (number_of r degree, List.assoc word sightings)
-      | _ -> malformed r "what was perceived is expected here: see DEGREE SIGHTING"
-    in
-    let seen = (degree, sighting) :: seen and places = taken r :: places in
-    match r.words with
-    | Some [ "door"; i ] ->
-        let i = number_of r i in
-        ignore (taken r);
-        go seen (i :: doors) places
-    | _ -> ({ see_lines = List.rev seen; door_lines = List.rev doors }, Array.of_list (List.rev places))
+  let rec go seen doors =
+    let seen = line r "see DEGREE SIGHTING" (see r) :: seen in
+    match read_words (door r) r with
+    | Some i -> ignore (taken r); go seen (i :: doors)
+    | None ->
+        let seen = List.rev seen in
+        ({ see_lines = items seen; door_lines = List.rev doors }, places seen)
   in
-  go [] [] []
+  go [] []
 
 let passage r word =
   let move () = number_of r (String.sub word 1 (String.length word - 1)) in
@@ -137,50 +128,39 @@ let contradiction r = function
 
 let pair r word = function [ first; p; q ] when first = word -> Some (number_of r p, number_of r q) | _ -> None
 
-let from_dart r =
-  match r.words with
-  | Some [ "from"; d ] -> let d = number_of r d in ignore (taken r); d
-  | _ -> malformed r "the pose is expected here: from D"
+let from_dart r = fst (line r "from D" (function [ "from"; d ] -> Some (number_of r d) | _ -> None))
+
+let poses r = function
+  | [ "from"; "any" ] -> Some None
+  | "from" :: (_ :: _ as poses) -> Some (Some (numbers r poses))
+  | _ -> None
 
 (* Walks from two poses. *)
 let walks r =
   let rec go found =
-    match r.words with
-    | Some [ "from"; p; q ] ->
-        let pose = (number_of r p, number_of r q) in
-        let at = taken r in
-        let doors = lines r (function [ "door"; i ] -> Some (number_of r i) | _ -> None) in
-        go (((pose, items doors), at) :: found)
-    | _ -> List.rev found
+    match read_words (pair r "from") r with
+    | Some poses -> let at = taken r in go (((poses, items (lines r (door r))), at) :: found)
+    | None -> List.rev found
   in
   go []
 
 (* A claim, with the numbers of the lines of its parts. *)
-let claim r kind =
-  match kind with
+let claim r = function
   | "determined" ->
       let from = from_dart r in
       let steps = lines r (step r) in
       (Determined (from, items steps), places steps)
   | "unexplained" ->
       let steps = lines r (step r) in
-      let last = match r.words with Some words -> contradiction r words | None -> None in
-      (match last with
-      | None -> malformed r "a step or a contradiction is expected here"
-      | Some last -> let at = taken r in (Unexplained (items steps, last), Array.append (places steps) [| at |]))
+      let last, at = line r "a step or a contradiction" (contradiction r) in
+      (Unexplained (items steps, last), Array.append (places steps) [| at |])
   | "conforms" -> (Conforms (from_dart r), [||])
-  | "diverges" -> (
-      match r.words with
-      | Some [ "from"; "any" ] -> ignore (taken r); (Diverges None, [||])
-      | Some ("from" :: (_ :: _ as poses)) ->
-          let poses = numbers r poses in
-          ignore (taken r); (Diverges (Some poses), [||])
-      | _ -> malformed r "the poses are expected here: from D... or from any")
+  | "diverges" -> (Diverges (fst (line r "from D... or from any" (poses r))), [||])
   | "indistinguishable" -> let pairs = lines r (pair r "pair") in (Indistinguishable (items pairs), places pairs)
   | "distinguishable" -> let walks = walks r in (Distinguishable (items walks), places walks)
   | "isomorphic" -> let images = lines r (pair r "image") in (Isomorphic (items images), places images)
   | "not-isomorphic" -> let walks = walks r in (NotIsomorphic (items walks), places walks)
-  | _ -> malformed r (Printf.sprintf "there is no claim %S" kind)
+  | kind -> malformed r (Printf.sprintf "there is no claim %S" kind)
 
 (* What is said *)
 
@@ -233,24 +213,21 @@ let proved s c =
   | Isomorphic _ -> say "isomorphic: %d edges" (edges ())
   | NotIsomorphic walks -> say "not-isomorphic: %d walks" (List.length walks)
 
-exception Not_proved of int * string
+let not_proved line what = raise (Wrong (line, "not proved: " ^ what))
 
 (* A proof: reads it, and checks each claim when it is read. Returns the number of claims. *)
 let proof r =
-  expect r [ "toposlam-proof"; "1" ];
+  expect r "toposlam-proof 1";
   let rec worlds found =
     if r.words = Some [ "world" ] then
       if List.length found = 2 then malformed r "there are at most two worlds" else worlds (world r :: found)
     else List.rev found
   in
   let worlds = worlds [] in
-  let marker_line =
-    match r.words with
-    | Some [ "marker"; kind ] when List.mem_assoc kind markers -> ignore (taken r); List.assoc kind markers
-    | _ -> malformed r "a world, or the kind of the marker, is expected here"
-  in
+  let marker_line, _ =
+    line r "world or marker KIND" (function [ "marker"; kind ] -> List.assoc_opt kind markers | _ -> None) in
   let walked = if r.words = Some [ "walk" ] then Some (walk r) else None in
-  let walk_line = match walked with Some (w, _) -> Some w | None -> None in
+  let walk_line = match walked with Some (text, _) -> Some text | None -> None in
   let s = { worlds = items worlds; marker_line; walk_line } in
   let prepared = prepare s in
   let rec claims count =
@@ -258,7 +235,7 @@ let proof r =
     | Some [ "claim"; kind ] ->
         let at = taken r in
         let c, parts = claim r kind in
-        expect r [ "end" ];
+        expect r "end";
         (match check prepared c with
         | Accepted -> print_endline ("proved: " ^ proved s c)
         | Refused (place, reason) ->
@@ -269,9 +246,9 @@ let proof r =
               | AtPart k, _ when int k < Array.length parts -> parts.(int k)
               | _ -> at
             in
-            raise (Not_proved (line, why reason)));
+            not_proved line (why reason));
         claims (count + 1)
-    | _ when count = 0 -> malformed r "a claim is expected here"
+    | _ when count = 0 -> malformed r "claim KIND is expected here"
     | _ -> count
   in
   claims 0
@@ -279,18 +256,15 @@ let proof r =
 let file name =
   let channel = if name = "-" then stdin else open_in_bin name in
   if name = "-" then set_binary_mode_in stdin true;
-  let r = { channel; line = 0; words = None; last = 0 } in
-  let refused line what = Printf.printf "%s:%d: %s\n" name line what; exit 1 in
+  let r = { channel; line = 0; words = None } in
   try
     advance r;
     let rec proofs count = if r.words = None then count else proofs (count + proof r) in
     let count = proofs 0 in
-    if count = 0 then raise (Not_proved (1, "there is no claim"));
+    if count = 0 then not_proved 1 "there is no claim";
     if name <> "-" then close_in channel;
     count
-  with
-  | Malformed (line, what) -> refused line ("malformed: " ^ what)
-  | Not_proved (line, what) -> refused line ("not proved: " ^ what)
+  with Wrong (line, what) -> Printf.printf "%s:%d: %s\n" name line what; exit 1
 
 let () =
   let usage = "usage: toposlam-proof-check FILE...   (- is the standard input)" in

@@ -143,6 +143,28 @@ each_definition_matters! {
     an_action_from_outside_has_to_be_allowed, "GivenActions.v":
         "if allowed_action allowed patience K a then guided_by"
         => "if allowed_action allowed patience K a || true then guided_by";
+    the_checker_follows_two_passages_only_from_one_dart, "Checker.v":
+        "if name_of k x == name_of k y then inl" => "if true then inl";
+    the_checker_turns_the_visits_that_it_joins, "Checker.v":
+        "N.add at_to (N.sub (degree_at s) at_from)" => "N.add at_to at_from";
+    a_step_alone_is_no_contradiction, "Checker.v":
+        "by_test (two_doors x y || other_degree x y)" => "by_test true";
+    a_marker_along_another_door_of_a_turned_robot_is_no_contradiction, "Checker.v":
+        "name_of k (a, i) != name_of k (b, j)" => "i != j";
+    the_checker_asks_for_every_door_of_a_vertex, "Checker.v":
+        "N0 (degree_at visit) (has_entry its)" => "(N.succ N0) (degree_at visit) (has_entry its)";
+    the_checker_refuses_worlds_that_are_not_connected, "Checker.v":
+        "first_not (has_entry (reached T)) (dart_list T)"
+        => "first_not (has_entry (dart_set T)) (dart_list T)";
+    the_checker_refuses_edges_with_one_dart, "Checker.v":
+        "o != d & has_entry (dart_set T) o" => "true & has_entry (dart_set T) o";
+    the_checker_looks_whether_doors_exist, "Checker.v":
+        "if N.ltb i degree then differs" => "if true then differs";
+    the_checker_follows_every_pair_of_poses_behind_the_doors, "Checker.v":
+        "(fun i => is_pair t (traverse_in T p i) (traverse_in U q i))"
+        => "(fun i => is_pair t (turn_in T p i) (turn_in U q i))";
+    the_checker_compares_every_pose_of_the_second_world, "Checker.v":
+        "first_not (has_entry compared) (dart_list U)" => "first_not (has_entry compared) [::]";
 }
 
 #[test]
