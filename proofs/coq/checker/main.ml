@@ -1,10 +1,11 @@
 (* Checks proofs of verdicts with the program that is extracted from Checker.v. This file reads the format of
    docs/proofs-of-verdicts.md, and refuses everything else.
 
-     toposlam-proof-check FILE...      (- is the standard input)
+     toposlam-proof-check FILE...               each claim that is proved, or FILE:LINE: and why it is not, and ends
+     toposlam-proof-check --verdicts FILE...    of each file whether it is accepted or refused
 
-   Prints a line for each claim that is proved, or FILE:LINE: and why it is not. Exit codes: 0 every claim is proved,
-   1 one is not, or a file is malformed, 2 bad usage, or a file cannot be read. *)
+   - is the standard input. Exit codes: 0 every claim is proved, 1 one is not, or a file is malformed, 2 bad usage, or a
+   file cannot be read. *)
 
 open Checker
 
@@ -15,8 +16,19 @@ exception Wrong of int * string
 
 let rec positive i = if i = 1 then XH else if i land 1 = 0 then XO (positive (i lsr 1)) else XI (positive (i lsr 1))
 let number i = if i = 0 then N0 else Npos (positive i)
-let rec int_of = function XH -> 1 | XO p -> 2 * int_of p | XI p -> (2 * int_of p) + 1
-let int = function N0 -> 0 | Npos p -> int_of p
+
+(* Digits, whatever their number: ten times the number before, and the digit. *)
+let decimal digits =
+  if String.length digits <= 18 then number (int_of_string digits)
+  else
+    let next n digit = N.add (N.double (N.add n (N.double (N.double n)))) (number (Char.code digit - Char.code '0')) in
+    String.fold_left next N0 digits
+
+(* For messages: not more than the largest [int]. *)
+let int n =
+  let rec bits = function XH -> 1 | XO p | XI p -> 1 + bits p in
+  let rec int_of = function XH -> 1 | XO p -> 2 * int_of p | XI p -> (2 * int_of p) + 1 in
+  match n with N0 -> 0 | Npos p -> if bits p < Sys.int_size then int_of p else max_int
 
 (* Lines *)
 
@@ -32,6 +44,7 @@ let rec advance r =
   | text ->
       r.line <- r.line + 1;
       if pos_in r.channel - before = String.length text then malformed r "the last line does not end";
+      if not (String.for_all (fun c -> ' ' <= c && c <= '~') text) then malformed r "a line is printable ASCII";
       if text <> "" && text.[0] = '#' then advance r else r.words <- Some (String.split_on_char ' ' text)
 
 (* The number of a line that was read, when the reader goes on to the next. *)
@@ -42,8 +55,7 @@ let number_of r word =
   let is_digit c = '0' <= c && c <= '9' in
   if digits = 0 || not (String.for_all is_digit word) || (digits > 1 && word.[0] = '0') then
     malformed r (Printf.sprintf "%S is no number" word);
-  if digits > 18 then malformed r ("the number " ^ word ^ " is too large");
-  number (int_of_string word)
+  decimal word
 
 let numbers r words = List.rev (List.rev_map (number_of r) words)
 
@@ -173,7 +185,7 @@ let why = function
   | EdgesDiffer d -> say "dart %d does not stand in one edge" (int d)
   | NotConnected d -> say "dart %d is not reached from the facing dart" (int d)
   | TablesWrong -> "this is no world"
-  | WrongParts -> "the claim needs another number of worlds, or a walk"
+  | WrongParts -> "the claim needs other parts before it: one world, two or none, and a walk or none"
   | OnlyDirectional -> "this needs a directional marker"
   | NothingClaimed -> "nothing is claimed"
   | DegreeIs degree -> say "here the degree is %d" (int degree)
@@ -183,6 +195,7 @@ let why = function
   | GivesAll d -> say "from dart %d the walk gives these percepts" (int d)
   | NoVisit k -> say "there is no visit %d" (int k)
   | NoMove m -> say "there is no move %d" (int m)
+  | NoDoor (k, i) -> say "there is no door %d at visit %d" (int i) (int k)
   | NotPointing k -> say "at visit %d no directional marker was seen" (int k)
   | NotOne -> "the darts from which these passages leave are not known to be one"
   | TwoDoors -> "these darts are two doors of one vertex: this would be a contradiction"
@@ -196,6 +209,8 @@ let why = function
   | NoImage d -> say "dart %d has no image" (int d)
   | NotKept d -> say "the edges, or the order clockwise, are not kept at dart %d" (int d)
   | ImageShared d -> say "another dart has the image of dart %d" (int d)
+  | ImageTwice -> "a dart has an image twice"
+  | WalksTooMany -> "a dart of the second world has two walks"
   | PosesLeftOut d -> say "dart %d of the second world is left out" (int d)
   | OtherPose d -> say "the pose %d in the first world is not that of the first walk" (int d)
 
@@ -216,7 +231,7 @@ let proved s c =
 let not_proved line what = raise (Wrong (line, "not proved: " ^ what))
 
 (* A proof: reads it, and checks each claim when it is read. Returns the number of claims. *)
-let proof r =
+let proof print r =
   expect r "toposlam-proof 1";
   let rec worlds found =
     if r.words = Some [ "world" ] then
@@ -237,7 +252,7 @@ let proof r =
         let c, parts = claim r kind in
         expect r "end";
         (match check prepared c with
-        | Accepted -> print_endline ("proved: " ^ proved s c)
+        | Accepted -> print ("proved: " ^ proved s c)
         | Refused (place, reason) ->
             let line =
               match (place, walked) with
@@ -253,26 +268,41 @@ let proof r =
   in
   claims 0
 
-let file name =
+(* The number of claims of a file, or what is wrong first. *)
+let file print name =
   let channel = if name = "-" then stdin else open_in_bin name in
-  if name = "-" then set_binary_mode_in stdin true;
   let r = { channel; line = 0; words = None } in
-  try
-    advance r;
-    let rec proofs count = if r.words = None then count else proofs (count + proof r) in
-    let count = proofs 0 in
-    if count = 0 then not_proved 1 "there is no claim";
-    if name <> "-" then close_in channel;
-    count
-  with Wrong (line, what) -> Printf.printf "%s:%d: %s\n" name line what; exit 1
+  let rec proofs count = if r.words = None then count else proofs (count + proof print r) in
+  let read () =
+    match advance r; proofs 0 with
+    | 0 -> Error (1, "not proved: there is no claim")
+    | count -> Ok count
+    | exception Wrong (line, what) -> Error (line, what)
+  in
+  Fun.protect read ~finally:(fun () -> if name <> "-" then close_in_noerr channel)
+
+let check_all files =
+  let claims count name =
+    match file print_endline name with
+    | Ok claims -> count + claims
+    | Error (line, what) -> Printf.printf "%s:%d: %s\n" name line what; exit 1
+  in
+  Printf.printf "proved: %d claims\n" (List.fold_left claims 0 files)
+
+let verdicts files =
+  let accepted name =
+    let accepted = Result.is_ok (file ignore name) in
+    print_endline ((if accepted then "accepted " else "refused ") ^ name);
+    accepted
+  in
+  if not (List.fold_left (fun all name -> accepted name && all) true files) then exit 1
 
 let () =
-  let usage = "usage: toposlam-proof-check FILE...   (- is the standard input)" in
-  match List.tl (Array.to_list Sys.argv) with
-  | [] -> prerr_endline usage; exit 2
-  | [ ("-h" | "--help") ] -> print_endline usage
-  | names -> (
-      try
-        let count = List.fold_left (fun count name -> count + file name) 0 names in
-        Printf.printf "proved: %d claims\n" count
-      with Sys_error what -> prerr_endline ("error: " ^ what); exit 2)
+  let usage = "usage: toposlam-proof-check [--verdicts] FILE...   (- is the standard input)" in
+  try
+    match List.tl (Array.to_list Sys.argv) with
+    | [ ("-h" | "--help") ] -> print_endline usage
+    | "--verdicts" :: (_ :: _ as files) -> verdicts files
+    | [] | "--verdicts" :: _ -> prerr_endline usage; exit 2
+    | files -> check_all files
+  with Sys_error what -> prerr_endline ("error: " ^ what); exit 2
