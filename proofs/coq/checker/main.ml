@@ -1,7 +1,7 @@
 (* Checks proofs of verdicts with the program that is extracted from Checker.v. This file reads the format of
    docs/proofs-of-verdicts.md, and refuses everything else.
 
-     toposlam-proof-check FILE...               each claim that is proved, or FILE:LINE: and why it is not, and ends
+     toposlam-proof-check FILE...               each claim that is proved, and FILE:LINE: and why a file is refused
      toposlam-proof-check --verdicts FILE...    of each file whether it is accepted or refused
 
    - is the standard input. Exit codes: 0 every claim is proved, 1 one is not, or a file is malformed, 2 bad usage, or a
@@ -16,19 +16,8 @@ exception Wrong of int * string
 
 let rec positive i = if i = 1 then XH else if i land 1 = 0 then XO (positive (i lsr 1)) else XI (positive (i lsr 1))
 let number i = if i = 0 then N0 else Npos (positive i)
-
-(* Digits, whatever their number: ten times the number before, and the digit. *)
-let decimal digits =
-  if String.length digits <= 18 then number (int_of_string digits)
-  else
-    let next n digit = N.add (N.double (N.add n (N.double (N.double n)))) (number (Char.code digit - Char.code '0')) in
-    String.fold_left next N0 digits
-
-(* For messages: not more than the largest [int]. *)
-let int n =
-  let rec bits = function XH -> 1 | XO p | XI p -> 1 + bits p in
-  let rec int_of = function XH -> 1 | XO p -> 2 * int_of p | XI p -> (2 * int_of p) + 1 in
-  match n with N0 -> 0 | Npos p -> if bits p < Sys.int_size then int_of p else max_int
+let rec int_of = function XH -> 1 | XO p -> 2 * int_of p | XI p -> (2 * int_of p) + 1
+let int = function N0 -> 0 | Npos p -> int_of p
 
 (* Lines *)
 
@@ -55,7 +44,8 @@ let number_of r word =
   let is_digit c = '0' <= c && c <= '9' in
   if digits = 0 || not (String.for_all is_digit word) || (digits > 1 && word.[0] = '0') then
     malformed r (Printf.sprintf "%S is no number" word);
-  decimal word
+  if digits > 18 then malformed r ("the number " ^ word ^ " is too large");
+  number (int_of_string word)
 
 let numbers r words = List.rev (List.rev_map (number_of r) words)
 
@@ -282,12 +272,14 @@ let file print name =
   Fun.protect read ~finally:(fun () -> if name <> "-" then close_in_noerr channel)
 
 let check_all files =
-  let claims count name =
+  let claims (count, all) name =
     match file print_endline name with
-    | Ok claims -> count + claims
-    | Error (line, what) -> Printf.printf "%s:%d: %s\n" name line what; exit 1
+    | Ok claims -> (count + claims, all)
+    | Error (line, what) -> Printf.printf "%s:%d: %s\n" name line what; (count, false)
   in
-  Printf.printf "proved: %d claims\n" (List.fold_left claims 0 files)
+  let count, all = List.fold_left claims (0, true) files in
+  if all then Printf.printf "proved: %d claims\n" count;
+  all
 
 let verdicts files =
   let accepted name =
@@ -295,14 +287,14 @@ let verdicts files =
     print_endline ((if accepted then "accepted " else "refused ") ^ name);
     accepted
   in
-  if not (List.fold_left (fun all name -> accepted name && all) true files) then exit 1
+  List.fold_left (fun all name -> accepted name && all) true files
 
 let () =
   let usage = "usage: toposlam-proof-check [--verdicts] FILE...   (- is the standard input)" in
   try
     match List.tl (Array.to_list Sys.argv) with
     | [ ("-h" | "--help") ] -> print_endline usage
-    | "--verdicts" :: (_ :: _ as files) -> verdicts files
-    | [] | "--verdicts" :: _ -> prerr_endline usage; exit 2
-    | files -> check_all files
+    | [] | [ "--verdicts" ] -> prerr_endline usage; exit 2
+    | "--verdicts" :: files -> if not (verdicts files) then exit 1
+    | files -> if not (check_all files) then exit 1
   with Sys_error what -> prerr_endline ("error: " ^ what); exit 2
