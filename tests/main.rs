@@ -17,6 +17,7 @@ mod paper;
 mod process;
 mod schema;
 mod scripts;
+mod verdicts;
 
 use std::{
     fs,

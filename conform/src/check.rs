@@ -250,14 +250,20 @@ impl LogCheck<'_> {
         let Some(world) = self.world else { return Ok(None) };
         // In a laser log bends of corridors are vertices only if that is asked for.
         let smooths = self.evidence == Evidence::Laser && !self.laser.corner.corners;
-        let world = if smooths { world.smoothed() } else { world.clone() };
+        let compared = if smooths { world.smoothed() } else { world.clone() };
+        let recorded = head.start(world).map(|start| world.start_text(start));
         let start = match self.start {
-            RobotStart::Recorded => head.start(&world).or(world.start),
+            RobotStart::Recorded => {
+                let recorded = recorded.and_then(|text| compared.start_from_text(&text).ok());
+                recorded.or(compared.start)
+            }
             RobotStart::Anywhere => None,
-            RobotStart::At(start) => Some(world.start_from_text(start)?),
+            RobotStart::At(start) => Some(compared.start_from_text(start)?),
         };
-        let known = Known::new(world, start, aid, algorithm);
-        known.ok_or(CheckError::TooManyStates).map(Some)
+        let known = Known::new(compared, start, aid, algorithm);
+        let (mut known, compared) = known.ok_or(CheckError::TooManyStates)?;
+        known.is_recorded = head.is_recorded_in(&world.graph);
+        Ok(Some((known, compared)))
     }
 
     /// Where the marker may lie at the start, and whether the topic map fits the check.

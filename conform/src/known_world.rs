@@ -24,6 +24,8 @@ pub struct Known {
     /// The world, without the corners that the events do not have.
     pub world: NamedWorld,
     pub start: Option<Dart>,
+    /// Whether the log was recorded in this world; `None` if the log does not say it.
+    pub is_recorded: Option<bool>,
     /// How often each case is reachable, over all starts.
     reachable: AlgorithmCoverage,
     /// A complete run, if the start is known.
@@ -73,7 +75,7 @@ impl Known {
         let reachable = trace::reachable(graph);
         let expected = start.map(|start| ExpectedRun::new(algorithm, graph, start));
         let compared = KnownWorld { graph: graph.clone(), states };
-        Some((Self { world, start, reachable, expected }, compared))
+        Some((Self { world, start, is_recorded: None, reachable, expected }, compared))
     }
 
     /// Whether some run of Algorithm 1 has a case.

@@ -24,6 +24,7 @@ mod measured_hallways;
 mod message_clock;
 mod placed_scenes;
 mod possible_visits;
+mod proof;
 mod quirks;
 mod recorded_events;
 mod report;

@@ -64,10 +64,11 @@ impl<'r> LogHead<'r> {
         (world_hash(&world.graph, start) == run.world_hash).then_some(start)
     }
 
-    /// Whether the log was recorded in another world.
-    pub(crate) fn is_of_other_world(self, graph: &EmbeddedGraph) -> bool {
-        let recorded = self.0.map_or("", |run| &run.world_hash);
-        !recorded.is_empty() && graph.darts().all(|dart| world_hash(graph, dart) != *recorded)
+    /// Whether the log was recorded in this world; `None` if it does not say where.
+    pub(crate) fn is_recorded_in(self, graph: &EmbeddedGraph) -> Option<bool> {
+        let recorded = &self.0?.world_hash;
+        let is_here = || graph.darts().any(|dart| world_hash(graph, dart) == *recorded);
+        (!recorded.is_empty()).then(is_here)
     }
 
     /// Whether doors can be compared with an algorithm, which needs a marker: it is recorded, or a percept shows

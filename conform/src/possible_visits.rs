@@ -52,6 +52,9 @@ pub struct PossibleVisits {
     /// Where the robot may be after the last visit in the known world.
     #[serde(skip)]
     pub(super) states: Vec<State>,
+    /// The visits with what the scans cannot exclude.
+    #[serde(skip)]
+    pub(super) sets: Vec<VisitSet>,
     /// Whether the robot may have taken any doors: those of an algorithm depend on the percepts.
     #[serde(skip)]
     by_anyone: bool,
@@ -127,6 +130,7 @@ impl PossibleVisits {
             };
         }
         judged.algorithm = judged.follow(&sets, config, watch);
+        judged.sets = sets;
         judged
     }
 

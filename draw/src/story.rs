@@ -301,7 +301,9 @@ fn at_start(sighting: Sighting, string_is_laid: bool) -> (StoryAid, &'static str
             (StoryAid::LaidString, "The fixed end of its string is here, as a marker")
         }
         Sighting::Pointing(_) => (StoryAid::Marker, "It puts its marker down here"),
-        Sighting::Lying(2..) | Sighting::These(_) => (StoryAid::Markers, "Its markers lie here"),
+        Sighting::Lying(2..) | Sighting::These(_) | Sighting::TwoMarkers(_) => {
+            (StoryAid::Markers, "Its markers lie here")
+        }
         Sighting::String(_) => (StoryAid::String, "The fixed end of its string is here"),
         Sighting::Team(TeamView([_, OtherRobot::Absent])) => {
             (StoryAid::Scouts, "The other robot is here")

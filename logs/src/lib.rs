@@ -52,4 +52,4 @@ pub use no_return::NoReturnSign;
 pub use reading_remark::ReadingRemark;
 pub use skipped_lines::SkippedLines;
 pub use transforms::{FrameTree, Mount, is_robot_frame};
-pub use world_hash::world_hash;
+pub use world_hash::{hexadecimal, world_hash};

@@ -15,7 +15,12 @@ pub fn world_hash(graph: &EmbeddedGraph, facing: Dart) -> String {
     for word in code(graph, facing).words() {
         digest.update(word.to_le_bytes());
     }
-    digest.finalize().iter().fold(String::new(), |mut text, byte| {
+    hexadecimal(&digest.finalize())
+}
+
+/// Bytes in hexadecimal, two digits each.
+pub fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
         // Writing to a string cannot fail.
         let _ = write!(text, "{byte:02x}");
         text

@@ -19,6 +19,8 @@ pub(crate) enum InjectedFlaw {
     NotTested,
     /// A walk that does not confirm a hypothesis is made, and its success is taken as proof.
     ProofByOtherWalk,
+    /// The vertex at which the movable marker is seen is taken for the pose that a test expects there.
+    VertexTakenForPose,
     /// There is no place validation: every place is new.
     EveryPlaceIsNew,
     /// The search ends at the first candidate.

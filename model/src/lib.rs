@@ -20,7 +20,8 @@
 //! * [`mapping`]: Algorithm 1, the movable marker algorithm, and their parts (Section 2.3);
 //! * [`check`]: runs an algorithm, or any explorer, on every start, and judges the maps;
 //! * [`trace`]: checks recorded explorations;
-//! * [`visits`]: judges visits that views do not decide.
+//! * [`visits`]: judges visits that views do not decide;
+//! * [`proof`]: proofs of verdicts, which a verified checker confirms.
 //!
 //! ```
 //! use toposlam_model::{
@@ -61,6 +62,7 @@ pub mod mapping;
 pub mod marker;
 pub mod measurement;
 pub mod percept;
+pub mod proof;
 mod similar;
 pub mod trace;
 pub mod visits;

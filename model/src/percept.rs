@@ -57,6 +57,8 @@ pub enum Sighting {
     Pointing(Door),
     /// This number of undirected markers that look alike are here; at least one.
     Lying(u32),
+    /// A directional marker that stays, and one that is carried; at least one of them is here.
+    TwoMarkers(TwoMarkersView),
     /// Of markers that look different, these are here.
     These(MarkerSet),
     Passed,
@@ -203,6 +205,32 @@ impl fmt::Display for StringView {
     }
 }
 
+/// What a robot sees of a directional marker that stays, and of one that is carried.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TwoMarkersView {
+    /// If the directional marker is here: the door along which it points.
+    pub along: Option<Door>,
+    /// Whether the movable marker lies here.
+    pub movable: bool,
+}
+
+impl TwoMarkersView {
+    /// What it adds to a percept.
+    pub fn sighting(self) -> Sighting {
+        if self == Self::default() { Sighting::Nothing } else { Sighting::TwoMarkers(self) }
+    }
+}
+
+/// `directional marker along door 1, movable marker`.
+impl fmt::Display for TwoMarkersView {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let along = self.along.map(|door| format!("directional marker along door {}", door.0));
+        let movable = self.movable.then(|| "movable marker".to_owned());
+        let parts: Vec<_> = along.into_iter().chain(movable).collect();
+        write!(out, "{}", parts.join(", "))
+    }
+}
+
 /// What a robot knows of the others of its team: the second robot, and the third.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TeamView(pub [OtherRobot; 2]);
@@ -271,6 +299,7 @@ impl fmt::Display for Sighting {
             Self::Pointing(door) => write!(out, "marker along door {}", door.0),
             Self::Lying(1) => write!(out, "marker"),
             Self::Lying(count) => write!(out, "{count} markers"),
+            Self::TwoMarkers(view) => write!(out, "{view}"),
             Self::These(markers) => write!(out, "{markers}"),
             Self::Passed => write!(out, "past the mark"),
             Self::PassedAlong => write!(out, "past the mark, along its arrow"),
@@ -314,10 +343,14 @@ impl Percept {
     pub fn seen_from(self, entry: Door) -> Self {
         use Sighting::{
             Ball, Compass, Nothing, Passed, PassedAgainst, PassedAlong, Pointing, String, Team,
+            TwoMarkers,
         };
         let seen_from = |door: Door| door.seen_from(entry, self.degree);
         let sighting = match self.sighting {
             Pointing(door) => Pointing(seen_from(door)),
+            TwoMarkers(view) => {
+                TwoMarkers(TwoMarkersView { along: view.along.map(seen_from), ..view })
+            }
             String(view) => String(StringView {
                 doors: view.doors.seen_from(entry, self.degree),
                 hand: view.hand.map(seen_from),

@@ -96,6 +96,80 @@ fn a_directional_marker_that_is_dropped_points_along_the_door_behind_the_robot()
     assert_eq!(refused(&mut world, "drop"), RefusedAction::NothingToDrop);
 }
 
+/// The directional marker stays, and it is seen beside the other one.
+#[test]
+fn of_two_markers_a_robot_carries_one_and_leaves_the_other() {
+    let graph = junction();
+    let aid = MappingAlgorithm::DirectionalAndMovable.aid();
+    let mut world = GraphWorld::with_aid(&graph, aid, Dart(2));
+    let both = "directional marker along door 0, movable marker";
+    assert_eq!(world.sensed().sighting.to_string(), both);
+    assert_eq!(refused(&mut world, "drop"), RefusedAction::NothingToDrop);
+    assert_eq!(
+        done(&mut world, "pick-up 0 drop 1 0 pick-up 0"),
+        [
+            "directional marker along door 0",
+            "no marker",
+            "movable marker",
+            "no marker",
+            "movable marker",
+            "no marker",
+            "no marker",
+        ]
+    );
+    // At the start, from the bend and round the loop.
+    assert_eq!(
+        done(&mut world, "0 1 drop 1 2"),
+        [
+            "no marker",
+            "directional marker along door 0",
+            both,
+            "directional marker along door 2, movable marker",
+            "no marker",
+        ]
+    );
+    for sighting in ["movable marker", "directional marker along door 1", both] {
+        assert!(aid.shows(sighting.parse().unwrap()));
+    }
+    for sighting in ["marker", "marker along door 1"] {
+        assert!(!aid.shows(sighting.parse().unwrap()));
+    }
+}
+
+/// Without moving the marker, the robot sees what a directional marker shows.
+#[test]
+fn beside_a_movable_marker_the_directional_one_shows_the_same() {
+    let aid = MappingAlgorithm::DirectionalAndMovable.aid();
+    for graph in (1..=3).flat_map(|edges| starts(Class::Multigraph, edges)) {
+        let world = GraphWorld::with_aid(&graph, aid, Dart(0));
+        for pose in graph.darts() {
+            let there = world.clone().at(State { pose, ..world.state() });
+            let along = match there.sensed().sighting {
+                Sighting::TwoMarkers(view) => view.along,
+                _ => None,
+            };
+            let shown = along.map_or(Sighting::Nothing, Sighting::Pointing);
+            assert_eq!(shown, Marker::sighting(&Directional, &graph, Dart(0), pose));
+        }
+    }
+}
+
+/// The robot knows where it has left its marker.
+#[test]
+fn a_movable_marker_that_was_moved_by_somebody_else_is_a_contradiction() {
+    let algorithm = MappingAlgorithm::DirectionalAndMovable;
+    let ring = EmbeddedGraph::cycle(9);
+    let mut world = GraphWorld::with_aid(&ring, algorithm.aid(), Dart(0));
+    // The marker is taken away from the start before the run.
+    world.act("pick-up".parse().unwrap()).unwrap();
+    let ended = algorithm.map_world(&mut world, 50, &mut ()).1.unwrap_err().to_string();
+    assert_eq!(
+        ended,
+        "the world contradicts itself: at the known vertex v0, entered by its dart 0: expected degree 2 with the \
+         directional marker along door 0, movable marker, found degree 2 with the directional marker along door 0"
+    );
+}
+
 /// Round a ring of three edges.
 #[test]
 fn a_string_is_paid_out_along_edges_and_wound_in_on_the_way_back() {

@@ -35,6 +35,7 @@ fn the_published_moves_with_other_aids_are_those_of_right_maps() {
         ("movable", [3_392, 12_689]),
         ("movable-4-distinct", [2_045, 6_928]),
         ("movable-directional", [3_438, 12_761]),
+        ("movable+directional", [1_137, 2_865]),
         ("string-1", [1_233, 3_249]),
         ("string", [706, 1_708]),
         ("team-2", [2_125, 8_830]),

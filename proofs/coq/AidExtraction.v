@@ -27,6 +27,7 @@ Definition along (X : aid) (W : start) (listed actions : seq (action_with (aid_a
 Definition along_alike number := @along (markers_alike number).
 Definition along_distinct number := @along (markers_distinct number).
 Definition along_directional := @along movable_directional.
+Definition along_both := @along directional_and_movable.
 Definition along_team heading others := @along (team heading others).
 Definition along_string length := @along (string length).
 
@@ -34,4 +35,4 @@ Extraction Language OCaml.
 (* What it makes would not have a general type in OCaml. *)
 Extraction Inline SimplPred.
 Set Warnings "-extraction-opaque-accessed,-extraction-reserved-identifier".
-Extraction "aids.ml" start_of along_alike along_distinct along_directional along_team along_string.
+Extraction "aids.ml" start_of along_alike along_distinct along_directional along_both along_team along_string.

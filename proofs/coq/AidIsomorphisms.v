@@ -73,6 +73,12 @@ move=> V W f iso; exists (omap f); split=> // p [along|] /=; last by split=> // 
 by rewrite isomorphism_same_vertex // isomorphism_findex //; split=> // -[] /=; rewrite ?isomorphism_same_vertex.
 Qed.
 
+Lemma directional_and_movable_keeps_isomorphisms : keeps_isomorphisms directional_and_movable.
+Proof.
+move=> V W f iso; exists (fun x => (f x.1, omap f x.2)); split=> // p [along spot] /=.
+by rewrite isomorphism_same_vertex // isomorphism_findex // lies_at_omap // carried_omap; split=> // -[].
+Qed.
+
 Lemma team_keeps_isomorphisms heading others : keeps_isomorphisms (team heading others).
 Proof.
 move=> V W f iso; exists (map f); split=> [p|p x /=]; first by rewrite /= map_nseq.

@@ -132,6 +132,22 @@ Definition movable_directional : aid := {|
   leave := fun _ place _ => place
 |}.
 
+(** A directional marker that stays, and an undirected one that is picked up, carried and dropped. The robot sees the
+    door along which the one points, and whether the other lies here. *)
+Definition directional_and_movable : aid := {|
+  sightings := option door * bool;
+  aid_action := holding;
+  placed := fun G => (G * option G)%type;
+  first_placed := fun G facing => (facing, Some facing);
+  shows := fun G pose places =>
+    (if same_vertex pose places.1 then Some (findex clockwise pose places.1) else None, lies_at pose places.2);
+  can_act := fun G pose places a =>
+    match a with PickUp => lies_at pose places.2 | Drop => is_carried places.2 end;
+  act := fun G pose places a => (places.1, match a with PickUp => None | Drop => Some pose end);
+  can_leave := fun _ _ _ => true;
+  leave := fun _ places _ => places
+|}.
+
 (** * Other robots *)
 
 (** What is known of another robot: it is here; it is with an earlier one of the others; or it is

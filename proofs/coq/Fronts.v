@@ -15,6 +15,12 @@ exists (fun seen => (seen.1, if seen.2 is Some i then Pointing i else Nothing)) 
 by rewrite /perceive /directional; case: ifP.
 Qed.
 
+Lemma directional_and_movable_front : has_front directional_and_movable.
+Proof.
+exists (fun seen => (seen.1, if seen.2.1 is Some i then Pointing i else Nothing)) => W p /=; split=> //.
+by rewrite /perceive /directional; case: ifP.
+Qed.
+
 Lemma team_front others : 0 < others -> has_front (team true others).
 Proof.
 case: others => // others _.

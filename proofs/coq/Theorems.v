@@ -11,7 +11,7 @@ From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
   Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect GivenActionsCorrect CertificateNeeded
   CertificateAttained AidIsomorphisms AidsAtVertices Imitation Fronts Strings
-  HeldMarkers RoundTeams Verdicts Checker CheckerWorlds CheckerSound.
+  HeldMarkers RoundTeams Plane Deeds Verdicts Checker CheckerWorlds CheckerSound.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Figures(corridor_a, corridor_b, planar_a, planar_b).
@@ -19,6 +19,8 @@ Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, p
 Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
 Import MovableMarker(handling_action, handling, can_handle, movable).
+Import Plane(in_the_plane).
+Import Deeds(deeds_of, decides, leaves, handles, chooses).
 Import Verdicts(world_text, setting, claim, describes, claim_true).
 Import Checker(wrong_world, tables_of, prepare, check, Accepted).
 
@@ -429,15 +431,16 @@ split=> //; [exact: Figures.corridor_simple | exact: Figures.corridor_degree |].
 exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
-(** Nor does it in worlds without loops and parallel edges in the plane, by two such worlds with 8 edges. That they
-    are in the plane is not stated. Paper: beyond 2.2. *)
+(** Nor does it in worlds without loops and parallel edges in the plane, by two such worlds with 8 edges. Paper: beyond
+    2.2. *)
 Theorem undirected_planar_impossible (robot : strategy embedded_graph) :
-  [/\ simple planar_a, simple planar_b, ~ isomorphic planar_a planar_b,
-      bisimilar (moving undirected) planar_a planar_b
+  [/\ simple planar_a /\ simple planar_b, in_the_plane planar_a /\ in_the_plane planar_b,
+      ~ isomorphic planar_a planar_b, bisimilar (moving undirected) planar_a planar_b
     & ~ (maps (moving undirected) robot planar_a /\ maps (moving undirected) robot planar_b)].
 Proof.
-have [simple_a simple_b] := Figures.planar_simple; have same := Figures.planar_bisimilar.
-have differ := Figures.planar_not_isomorphic; split=> //; exact: Impossible.bisimilar_impossible same differ robot.
+have same := Figures.planar_bisimilar; have differ := Figures.planar_not_isomorphic.
+split=> //; [exact: Figures.planar_simple | exact: Plane.planar_in_the_plane |].
+exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
 (** A mark on an edge does not suffice, not even in worlds without loops and parallel edges: two such worlds
@@ -505,13 +508,15 @@ Qed.
 Theorem isomorphic_starts_bisimilar (number : nat) (heading : bool) (V W : start) :
   isomorphic_starts V W ->
   [/\ bisimilar (with_aid (markers_alike number)) V W, bisimilar (with_aid (markers_distinct number)) V W,
-      bisimilar (with_aid movable_directional) V W, bisimilar (with_aid (team heading number)) V W
+      bisimilar (with_aid movable_directional) V W /\ bisimilar (with_aid directional_and_movable) V W,
+      bisimilar (with_aid (team heading number)) V W
     & bisimilar (with_aid (string number)) V W].
 Proof.
-split; apply: AidIsomorphisms.isomorphic_bisimilar => //.
+split; try split; apply: AidIsomorphisms.isomorphic_bisimilar => //.
 - exact: AidIsomorphisms.alike_keeps_isomorphisms.
 - exact: AidIsomorphisms.distinct_keeps_isomorphisms.
 - exact: AidIsomorphisms.directional_keeps_isomorphisms.
+- exact: AidIsomorphisms.directional_and_movable_keeps_isomorphisms.
 - exact: AidIsomorphisms.team_keeps_isomorphisms.
 exact: AidIsomorphisms.string_keeps_isomorphisms.
 Qed.
@@ -562,11 +567,14 @@ by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
 Qed.
 
 (** A directional marker that can be carried has a front: if it stays where it is at the start, it shows what one
-    shows that cannot be carried. So have other robots that show their heading, if there is at least one. Paper:
-    beyond 2.3. *)
+    shows that cannot be carried. So has one that stays beside a movable marker, and so have other robots that show
+    their heading, if there is at least one. Paper: beyond 2.3. *)
 Theorem aids_with_a_front (others : nat) :
-  has_front movable_directional /\ (0 < others -> has_front (team true others)).
-Proof. by split; [apply: Fronts.movable_directional_front | apply: Fronts.team_front]. Qed.
+  [/\ has_front movable_directional, has_front directional_and_movable & 0 < others -> has_front (team true others)].
+Proof.
+split; [exact: Fronts.movable_directional_front | exact: Fronts.directional_and_movable_front |].
+exact: Fronts.team_front.
+Qed.
 
 (** Such an aid is as good as a directional marker: any robot with a directional marker can be simulated, if it takes
     only doors that exist. The simulating robot gives the same answer in the same pose, does only what is possible,
@@ -987,6 +995,24 @@ Theorem one_false_percept :
   [/\ complete [:: 0] (sees chain_2 [:: 0]), ~ isomorphic chain_2 chain_3
     & false_percepts (sees chain_3 [:: 0]) (sees chain_2 [:: 0]) = 1].
 Proof. exact: Tours.one_false_percept. Qed.
+
+(** * What is extracted *)
+
+(** A robot that does what is extracted from a program, with the default choices, takes the decisions of the robot
+    that obeys the program: one that only moves, and one with a movable marker. *)
+Theorem extracted_obeys A :
+  (forall (p : Program.program A) (past : seq percept),
+     decides id 0 0 (deeds_of (@leaves A) p) past = obey p past) /\
+  (forall (p : program_of handling_action A) (past : seq percept),
+     decides MovableMarker.LeaveBy MovableMarker.PickUp MovableMarker.Drop (deeds_of (@handles A) p) past =
+     obey p past).
+Proof. by split; [apply: Deeds.decides_moves | apply: Deeds.decides_handles]. Qed.
+
+(** And whichever of the listed options it chooses by its number, it is an allowed one. *)
+Theorem extracted_choices A (T : eqType) (xs : seq T) (default : T) (go : T -> Deeds.deeds A) (n i : nat) next :
+  xs != [::] -> chooses (among xs) default go = Deeds.Chooses n next -> i < n ->
+  exists2 x, allows (among xs) x & next (Some i) = go x.
+Proof. exact: Deeds.chooses_listed. Qed.
 
 (** * Proofs of verdicts *)
 

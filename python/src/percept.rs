@@ -3,6 +3,7 @@
 use pyo3::{IntoPyObjectExt, prelude::*, types::PyDict};
 use toposlam_model::percept::{
     Ball, OtherRobot, Percept as ModelPercept, Sighting, StringView, TeamView,
+    TwoMarkersView,
 };
 
 /// What a robot senses on arriving at a vertex: its degree, and what the marker adds.
@@ -20,7 +21,8 @@ impl Percept {
 
     /// What the marker adds: None, or the door along which a directional marker points, or the number of
     /// undirected markers here, or a word; of a string a dict with "doors", "fixed_end", "free_end" and "hand";
-    /// of a team a dict with "robots"; through binoculars a dict with "ball".
+    /// of a team a dict with "robots"; of two markers a dict with
+    /// "along" and "movable"; through binoculars a dict with "ball".
     #[getter]
     fn marker(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
         let words = match self.0.sighting {
@@ -33,6 +35,7 @@ impl Percept {
             Sighting::PassedAgainst => "against".to_owned(),
             Sighting::String(view) => return string(py, view).map(Some),
             Sighting::Team(view) => return team(py, view).map(Some),
+            Sighting::TwoMarkers(view) => return two_markers(py, view).map(Some),
             Sighting::Ball(view) => return ball(py, view).map(Some),
             Sighting::Compass(view) => view.to_string(),
         };
@@ -59,6 +62,13 @@ fn string(py: Python<'_>, view: StringView) -> PyResult<Py<PyAny>> {
     seen.set_item("fixed_end", fixed_end)?;
     seen.set_item("free_end", free_end)?;
     seen.set_item("hand", hand.map(|door| door.0))?;
+    seen.into_py_any(py)
+}
+
+fn two_markers(py: Python<'_>, view: TwoMarkersView) -> PyResult<Py<PyAny>> {
+    let seen = PyDict::new(py);
+    seen.set_item("along", view.along.map(|door| door.0))?;
+    seen.set_item("movable", view.movable)?;
     seen.into_py_any(py)
 }
 

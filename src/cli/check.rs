@@ -7,6 +7,7 @@ mod explorer_tally;
 mod failed_starts;
 mod journal;
 mod line;
+mod map_proofs;
 mod report;
 
 use std::{
@@ -54,6 +55,7 @@ use explorer_tally::ExplorerTally;
 use failed_starts::FailedStarts;
 use journal::{CheckJournal, JournalHeader};
 use line::{FailedRun, FailureLine, SizeLine};
+use map_proofs::MapProofs;
 use report::CheckReport;
 
 /// Run Algorithm 1 on every start of every world up to a size, and check every map
@@ -184,6 +186,11 @@ pub(super) struct CheckArguments {
     #[command(flatten)]
     estimate: EstimateOptions,
 
+    /// Write the proof of each map, one after the other, which a small verified checker confirms; --json has the SHA-256 of
+    /// those of each size
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["from", "choices", "shard", "journal", "hosts"])]
+    proof: Option<PathBuf>,
+
     /// Check larger worlds even after a wrong map, or after an explorer reached a limit
     #[arg(long)]
     keep_going: bool,
@@ -199,7 +206,7 @@ pub(super) struct CheckArguments {
 }
 
 /// Options of a check, which --add does not do.
-const NOT_ADDED: [&str; 16] = [
+const NOT_ADDED: [&str; 17] = [
     "edges",
     "class",
     "marker",
@@ -213,13 +220,15 @@ const NOT_ADDED: [&str; 16] = [
     "threads",
     "journal",
     "estimate",
+    "proof",
     "keep_going",
     "explorer",
     "hosts",
 ];
 
 /// Options of a check that explorers do not have.
-const NOT_FOR_EXPLORERS: [&str; 5] = ["algorithm", "choices", "shard", "estimate", "journal"];
+const NOT_FOR_EXPLORERS: [&str; 6] =
+    ["algorithm", "choices", "shard", "estimate", "journal", "proof"];
 
 /// Options of a check that machines cannot share. Clap does not ask for `--hosts` where it cannot be given, so
 /// `--process` excludes them, too.
@@ -285,6 +294,10 @@ impl CheckArguments {
                 self.edges.iter().map(|edges| self.enumerated(edges)).collect::<Result<_, _>>()?
             }
         };
+        output::check_place(&self.proof, &["proof"])?;
+        if self.proof.is_some() && !is_directional(self.marker) {
+            return Err(CliError::at("--proof", "needs --marker directional"));
+        }
         output::check_world_place(&self.worst, work.values().all(Work::is_simple))?;
         match mapper {
             Mapper::Algorithm(algorithm, _) if self.estimate.estimate.is_some() => {
@@ -408,11 +421,20 @@ impl CheckArguments {
         report: &mut CheckReport,
     ) -> Result<Checked, CliError> {
         let mut checked = Checked::default();
+        let mut proofs = self.proof.as_deref().map(MapProofs::create).transpose()?;
         for (line, work) in sizes {
             let edges = line.edges;
             let begun = Instant::now();
-            let CheckedSize { line, worst, unmapped } =
+            let CheckedSize { mut line, worst, unmapped } =
                 self.check_size(line, &work, mapper, cluster.as_mut())?;
+            if let (Some(proofs), Mapper::Algorithm(algorithm, _)) = (&mut proofs, mapper)
+                && line.holds
+            {
+                let progress = Progress::new(&counted(edges, "edge"), "proofs")?;
+                let digest = proofs.add_size((self.class(), edges), *algorithm, &progress);
+                progress.finish();
+                line.proofs_sha256 = Some(digest?);
+            }
             checked.interrupted = line.interrupted;
             checked.is_cut |= line.interrupted || line.stopped == Some(true);
             checked.has_unmapped |= line.failed > 0 || line.unknown.unwrap_or_default() > 0;
@@ -435,6 +457,7 @@ impl CheckArguments {
                 break;
             }
         }
+        proofs.map_or(Ok(()), MapProofs::close)?;
         Ok(checked)
     }
 

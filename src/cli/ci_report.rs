@@ -12,6 +12,7 @@ use std::{
 
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
+use toposlam_logs::hexadecimal;
 
 use super::{CliError, Outcome, output, terminal, text::counted, version};
 
@@ -213,11 +214,7 @@ fn shortened(message: String) -> String {
 /// Identifies a case: the same in the next report, whatever its message.
 fn fingerprint(verb: &str, name: &str) -> String {
     let digest = Sha256::digest(format!("{verb}\n{name}"));
-    let mut text = String::new();
-    for byte in &digest[..8] {
-        let _ = write!(text, "{byte:02x}");
-    }
-    text + ":1"
+    hexadecimal(&digest[..8]) + ":1"
 }
 
 /// What a verb checks.

@@ -14,6 +14,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     isomorphism::{Bijection, Difference, isomorphism, mirror_isomorphism},
     marker::{self},
+    proof::{Claim, Proof},
 };
 
 use super::{
@@ -25,6 +26,7 @@ use super::{
     output,
     progress::Progress,
     text::{counted, print_columns, print_paragraph, vertices},
+    verdict_proof::ProofOption,
     walk_page,
 };
 use robot_comparison::RobotComparison;
@@ -89,6 +91,9 @@ pub(super) struct CompareArguments {
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
 
+    #[command(flatten)]
+    proof: ProofOption,
+
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -117,6 +122,7 @@ impl CompareArguments {
         }
         let worlds = [&worlds[0], &worlds[1]];
         output::check_place(&self.html, &["html", "htm"])?;
+        self.proof.check_place()?;
         let robots = self.robots(worlds)?;
         let walk = match (&self.walk, &robots) {
             (None, _) => None,
@@ -134,6 +140,14 @@ impl CompareArguments {
             same: isomorphism(&worlds[0].graph, &worlds[1].graph),
             mirror: mirror_isomorphism(&worlds[0].graph, &worlds[1].graph).is_some(),
         };
+        self.proof.write(|| {
+            let claim = Claim::isomorphism(&worlds[0].graph, &worlds[1].graph);
+            match &robots {
+                Some(robots) => robots.proof(claim),
+                None => Ok(Proof::of_graphs(worlds.map(|world| &world.graph), claim)),
+            }
+            .map(|proof| vec![proof])
+        })?;
         if self.json {
             let mut line = fields(graphs.json());
             line.extend(robots.iter().flat_map(|robots| fields(robots.json())));

@@ -44,6 +44,7 @@ use super::{
     outcome::SeveralInputs,
     output,
     text::print_hanging,
+    verdict_proof::ProofOption,
 };
 use crate::page;
 use judged_log::JudgedLog;
@@ -89,7 +90,7 @@ pub(super) struct ConformArguments {
     /// scenes, commands, percepts, doors and the map with the recorded ones
     #[arg(long, conflicts_with_all = [
         "world", "start", "aid", "assume_marker", "driver", "class", "max_edges", "max_steps",
-        "laser_params", "corners", "events", "quirks", "require_coverage", "minimise", "picture", "html", "CiOptions",
+        "laser_params", "corners", "events", "quirks", "require_coverage", "minimise", "picture", "html", "proof", "CiOptions",
     ])]
     rerun: bool,
     /// The world file or floor plan in which they were recorded
@@ -152,6 +153,8 @@ pub(super) struct ConformArguments {
     /// Write the report as an HTML page
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    #[command(flatten)]
+    proof: ProofOption,
     /// Print one JSON object for each log, and one for all if there are several; with --events also one for
     /// each junction that the robot visited
     #[arg(long)]
@@ -301,6 +304,7 @@ impl ConformArguments {
             text::print(out, &report)?;
         }
         self.write_map(path, &report)?;
+        self.proof.write(|| checked.proofs())?;
         if let Some(picture) = &self.picture {
             laser_picture::write(picture, path, judged)?;
         }
@@ -312,8 +316,13 @@ impl ConformArguments {
         output::check_world_place(&self.map, self.class.is_simple())?;
         output::check_place(&self.minimise, &["mcap"])?;
         output::check_place(&self.picture, &["svg", "png"])?;
-        let of_one =
-            [("--map", &self.map), ("--minimise", &self.minimise), ("--picture", &self.picture)];
+        self.proof.check_place()?;
+        let of_one = [
+            ("--map", self.map.as_ref()),
+            ("--minimise", self.minimise.as_ref()),
+            ("--picture", self.picture.as_ref()),
+            ("--proof", self.proof.path()),
+        ];
         for (option, path) in of_one {
             if path.is_some() && self.logs.len() > 1 {
                 return Err(CliError::at(option, "this needs exactly one log"));

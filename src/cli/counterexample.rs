@@ -23,6 +23,7 @@ use super::{
     progress::Progress,
     text::counted,
     thread_option::ThreadOption,
+    verdict_proof::ProofOption,
 };
 use memory::MemoryLimit;
 use pairs::WorldPairs;
@@ -89,12 +90,15 @@ pub(super) struct CounterexampleArguments {
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
 
+    #[command(flatten)]
+    proof: ProofOption,
+
     /// Write the atlas instead: the smallest pair of every marker in every class, as world files,
     /// pictures and a table
     #[arg(
         long,
         value_name = "DIR",
-        conflicts_with_all = ["markers", "class", "all", "out_dir", "html", "expect", "json", "hosts"],
+        conflicts_with_all = ["markers", "class", "all", "out_dir", "html", "proof", "expect", "json", "hosts"],
     )]
     atlas: Option<PathBuf>,
 
@@ -150,6 +154,7 @@ impl CounterexampleArguments {
             let cause = "a page shows one marker; choose it with --marker";
             return Err(CliError::at("--html", cause));
         }
+        self.proof.check_place()?;
         let mut cluster = self.join_cluster(searches.iter().map(|(marker, _)| *marker), edges)?;
         let is_first = cluster.as_ref().is_none_or(|cluster| cluster.is_first());
         let folder = self.out_dir.as_ref().filter(|_| is_first);
@@ -164,6 +169,7 @@ impl CounterexampleArguments {
         let mut cases = Vec::new();
         // A file with a world of a pair.
         let mut written = None;
+        let mut proofs = String::new();
         let mut left = searches.iter();
         for (marker, search) in left.by_ref() {
             let begun = Instant::now();
@@ -190,6 +196,12 @@ impl CounterexampleArguments {
             }
             if let Some(path) = self.html.as_ref().filter(|_| is_first) {
                 found.write_page(path, *marker)?;
+            }
+            if self.proof.path().is_some() {
+                match found.proofs(*marker) {
+                    Ok(text) => proofs.push_str(&text),
+                    Err(why) => self.proof.remark(&why),
+                }
             }
             let pairs = found.pairs().len();
             let file = folder.zip(found.worlds.first());
@@ -219,6 +231,11 @@ impl CounterexampleArguments {
             cluster.close();
         }
         if is_first {
+            if proofs.is_empty() {
+                self.proof.remark(&"there is no pair");
+            } else {
+                self.proof.write_text(&proofs)?;
+            }
             self.ci.write("counterexample", &cases, written.as_deref())?;
         }
         Ok(outcome)

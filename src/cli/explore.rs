@@ -15,7 +15,10 @@ use toposlam_model::{
     aid::AidKind,
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{DEFAULT_DART_BOUND, MappingAlgorithm, MappingEvent, MappingMethod, Observer},
+    mapping::{
+        DEFAULT_DART_BOUND, FACING, MappingAlgorithm, MappingEvent, MappingMethod, Observer,
+    },
+    proof::{Proof, WalkRecorder},
 };
 
 use super::{
@@ -30,6 +33,7 @@ use super::{
     progress::StopSignal,
     run_choices,
     text::print_paragraph,
+    verdict_proof::ProofOption,
     write_world_or_picture,
 };
 use crate::{
@@ -125,6 +129,9 @@ pub(super) struct ExploreArguments {
     #[arg(long, value_name = "FILE")]
     map: Vec<PathBuf>,
 
+    #[command(flatten)]
+    proof: ProofOption,
+
     /// Print one JSON object, with the doors taken and each pick-up and drop
     #[arg(long)]
     json: bool,
@@ -182,8 +189,12 @@ impl ExploreArguments {
         for path in &self.map {
             output::check_map_place(path, world.graph.is_simple())?;
         }
-        let of_directional =
-            [("--certificate", self.certificate), ("--audit", self.audit.audits().is_some())];
+        self.proof.check_place()?;
+        let of_directional = [
+            ("--certificate", self.certificate),
+            ("--audit", self.audit.audits().is_some()),
+            ("--proof", self.proof.path().is_some()),
+        ];
         let other = of_directional.into_iter().find(|(_, is_given)| *is_given);
         match other.filter(|_| !is_directional(self.marker)) {
             Some((option, _)) => Err(CliError::at(option, "needs --marker directional")),
@@ -209,14 +220,18 @@ impl ExploreArguments {
             RunPrinter::Story(Box::new(PrintedStory::new(story, Some(&mut out))))
         };
         let method = MappingMethod::By { algorithm, audits: self.audit.audits().unwrap_or(0) };
+        let mut walk = WalkRecorder::default();
         let mut run = ExploredWorld::new(
             method,
             self.max_darts,
             (world, facing),
-            &mut |world: &mut _, journey: &_, event: MappingEvent| match &mut printer {
-                RunPrinter::Doors(doors) => doors.extend(event.action()),
-                RunPrinter::Summary(summary) => summary.count(event),
-                RunPrinter::Story(story) => story.event(world, journey, event),
+            &mut |world: &mut _, journey: &_, event: MappingEvent| {
+                walk.event(event);
+                match &mut printer {
+                    RunPrinter::Doors(doors) => doors.extend(event.action()),
+                    RunPrinter::Summary(summary) => summary.count(event),
+                    RunPrinter::Story(story) => story.event(world, journey, event),
+                }
             },
         );
         let mut doors = None;
@@ -242,11 +257,16 @@ impl ExploreArguments {
         }
         out.flush()?;
         match run.map() {
-            Some((map, moves)) => self.write_map(&map, moves, run.carries)?,
-            None if !self.map.is_empty() => {
-                remark!("the map is not written: it is not complete");
+            Some((map, moves)) => {
+                self.write_map(&map, moves, run.carries)?;
+                self.proof.write(|| Ok(vec![Proof::of_map(&map.graph, FACING, walk.walk()?)?]))?;
             }
-            None => {}
+            None => {
+                if !self.map.is_empty() {
+                    remark!("the map is not written: it is not complete");
+                }
+                self.proof.remark(&"the map is not complete");
+            }
         }
         Ok(run.outcome())
     }

@@ -26,6 +26,7 @@ mod run_options;
 mod run_report;
 mod sense;
 mod simulate;
+mod verdict_proof;
 mod version;
 mod walk_page;
 

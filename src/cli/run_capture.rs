@@ -19,6 +19,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{MapWalk, MappingEvent},
     percept::Door,
+    proof::WalkRecorder,
     world::GraphWorld,
 };
 use toposlam_simulator::run::Run;
@@ -45,6 +46,7 @@ pub(super) struct RunCapture<'o> {
     moves: u64,
     /// What the robot did, each with the number of frames before it.
     actions: Vec<(usize, Action)>,
+    walk: WalkRecorder,
 }
 
 /// The width of kept images, in pixels.
@@ -75,14 +77,15 @@ impl<'o> RunCapture<'o> {
             steps: Vec::new(),
             moves: 0,
             actions: Vec::new(),
+            walk: WalkRecorder::default(),
         })
     }
 
-    /// Ends the story.
-    pub(super) fn finish(self) -> Result<(), CliError> {
+    /// Ends the story, and returns the robot's walk.
+    pub(super) fn finish(self) -> Result<WalkRecorder, CliError> {
         self.progress.finish();
         self.story.finish()?;
-        Ok(())
+        Ok(self.walk)
     }
 
     /// What the page of the run shows. Its ending is still empty.
@@ -193,6 +196,7 @@ impl RunObserver for RunCapture<'_> {
     }
 
     fn mapping(&mut self, journey: &MapWalk, event: MappingEvent) {
+        self.walk.event(event);
         self.story.add(journey, event);
         self.steps.push(MappingStep { walk: journey.clone(), event });
     }

@@ -7,7 +7,8 @@ use toposlam_logs::{messages, recorder::Recorder, world_hash, writer::LogWriteEr
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{MappingMethod, RecoveryConfig},
+    mapping::{FACING, MappingMethod, RecoveryConfig},
+    proof::{Proof, WalkRecorder},
 };
 use toposlam_robot::{
     budget::{BudgetLimit, RunBudget},
@@ -20,7 +21,7 @@ use toposlam_vision::{
 
 use super::{
     CliError, earlier_logs::earlier_walks_of, method_options::MethodOptions, output, text::quoted,
-    version,
+    verdict_proof::ProofOption, version,
 };
 
 /// How a robot maps, what it may spend, from where it goes on, and what is written.
@@ -45,6 +46,8 @@ pub(super) struct RunOptions {
     /// Write the map: .toml, .json, .dot, or plantri's .ec; of a floor plan also .pc
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
+    #[command(flatten)]
+    proof: ProofOption,
     /// Print one JSON object
     #[arg(long)]
     pub(super) json: bool,
@@ -114,6 +117,7 @@ impl RunOptions {
     /// Checks the places of the log and the map, before long work begins.
     pub(super) fn check_places(&self, is_simple: bool) -> Result<(), CliError> {
         output::check_place(&self.log, &["mcap"])?;
+        self.proof.check_place()?;
         output::check_world_place(&self.map, is_simple)
     }
 
@@ -170,14 +174,22 @@ impl RunOptions {
         CliError::in_file(&path, format!("cannot be written: {error}{kept}"))
     }
 
-    /// Writes the map, if it is wanted and complete.
-    pub(super) fn write_map(&self, map: Option<&NamedWorld>) -> Result<(), CliError> {
+    /// Writes the map, if it is wanted and complete, and the proof that the robot's walk determines it.
+    pub(super) fn write_map(
+        &self,
+        map: Option<&NamedWorld>,
+        walk: &WalkRecorder,
+    ) -> Result<(), CliError> {
         match (&self.map, map) {
             (Some(path), Some(map)) => output::write_world(path, map)?,
             (Some(_), None) => remark!("the map is not written: the run ended early"),
             (None, _) => {}
         }
-        Ok(())
+        let Some(map) = map else {
+            self.proof.remark(&"the run ended early");
+            return Ok(());
+        };
+        self.proof.write(|| Ok(vec![Proof::of_map(&map.graph, FACING, walk.walk()?)?]))
     }
 }
 
@@ -187,7 +199,7 @@ impl RunOptions {
 pub(super) struct GivenOptions(Vec<(String, Vec<String>)>);
 
 /// The options that change no run.
-const OUTPUTS: [&str; 6] = ["html", "json", "log", "map", "quiet", "svg"];
+const OUTPUTS: [&str; 7] = ["html", "json", "log", "map", "proof", "quiet", "svg"];
 /// The options that are repeated although they are not given: their defaults may change.
 const WITH_DEFAULTS: [&str; 2] = ["algorithm", "seed"];
 

@@ -148,7 +148,7 @@ const OF_IMAGES: [&str; 5] = ["calibration", "size", "colours", "look", "effect"
 
 /// Options that need a run; --ros and --ros2 serve the robot instead. All are named: clap drops the requirement of an option
 /// that conflicts.
-const NOT_DRIVEN: [&str; 13] = [
+const NOT_DRIVEN: [&str; 14] = [
     "aid",
     "algorithm",
     "audit",
@@ -161,6 +161,7 @@ const NOT_DRIVEN: [&str; 13] = [
     "svg",
     "html",
     "map",
+    "proof",
     "json",
 ];
 
@@ -373,7 +374,7 @@ impl SimulateArguments {
         let run = run(&plan, facing, robot, sensor.clone(), observer, &settings);
         let logged = self.options.close(log);
         let mut page_data = capture.page_data(&world, &plan, facing, &run);
-        capture.finish()?;
+        let walk = capture.finish()?;
         logged?;
         let computed = Instant::now();
         // A run that ended early ends early again.
@@ -408,7 +409,8 @@ impl SimulateArguments {
             remark!("{:.1} s", begun.elapsed().as_secs_f64());
         }
         let about = format!("The map of {}, made by a simulated robot", world.name);
-        self.options.write_map(ended.map(&format!("{}-map", world.name), &about).as_ref())?;
+        let map = ended.map(&format!("{}-map", world.name), &about);
+        self.options.write_map(map.as_ref(), &walk)?;
         if let Some(path) = &self.svg {
             output::write_whole(path, picture::run_svg(&page_data).as_bytes())?;
         }

@@ -20,7 +20,6 @@ use super::super::{
     extract::{Evidence, SkippedMessages},
     judgement::{Judgement, Unproved},
     known_world::Known,
-    log_head::LogHead,
     marked_visits::AddedMarker,
     measured_hallways::MeasuredHallways,
     possible_visits::PossibleVisits,
@@ -181,7 +180,6 @@ pub struct MapSize {
 impl CheckedLog {
     pub(super) fn facts(&self, source: &LogSource) -> Facts {
         let Self { extracted, judgement, known, .. } = self;
-        let head = LogHead(source.head);
         let open = self.open_doors();
         let unrecognised = judgement.unrecognised.and_then(|event| {
             let found = judgement.events.events.get(event)?;
@@ -217,7 +215,7 @@ impl CheckedLog {
                 RecordedWorld {
                     world: run.world.clone(),
                     start: run.start.clone(),
-                    same_world: known.map(|known| !head.is_of_other_world(&known.world.graph)),
+                    same_world: known.and_then(|known| known.is_recorded),
                 }
             }),
             lacks_end: judgement.events.has_head && ending.is_none(),

@@ -60,12 +60,14 @@ fn a_head_decides_the_marker_the_algorithm_the_start_and_the_world() {
     assert_eq!(LogHead(Some(&unknown)).settings(None), Err("bold".to_owned()));
     // The same names in another world are other places. A log without a hash may be of any world.
     let elsewhere = Run { world_hash: "0".repeat(64), ..run.clone() };
-    for (run, start, is_other) in
-        [(&run, Some(facing), false), (&elsewhere, None, true), (&Run::default(), None, false)]
-    {
+    for (run, start, is_here) in [
+        (&run, Some(facing), Some(true)),
+        (&elsewhere, None, Some(false)),
+        (&Run::default(), None, None),
+    ] {
         let head = LogHead(Some(run));
-        let found = (head.start(&world), head.is_of_other_world(&world.graph));
-        assert_eq!(found, (start, is_other), "{run:?}");
+        let found = (head.start(&world), head.is_recorded_in(&world.graph));
+        assert_eq!(found, (start, is_here), "{run:?}");
     }
 }
 

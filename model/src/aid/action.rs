@@ -54,6 +54,14 @@ pub enum RefusedAction {
 }
 
 impl Action {
+    /// The door, if the action takes one.
+    pub fn door(self) -> Option<Door> {
+        match self {
+            Self::Take(door) => Some(door),
+            Self::Do(_) => None,
+        }
+    }
+
     /// The number of edges that are traversed: by the robot itself, or by one that it sends.
     pub fn moves(self) -> u64 {
         u64::from(matches!(self, Self::Take(_) | Self::Do(AidAction::Send { .. })))

@@ -5,6 +5,8 @@
 //!
 //! * [`markers`]: markers that are picked up, carried and dropped (Dudek, Jenkin, Milios and Wilkes, 1989 and 1991);
 //! * [`pointer`](mod@pointer): a directional marker that is carried;
+//! * [`directional_and_movable`](mod@directional_and_movable): a directional marker that stays, and an undirected one
+//!   that is carried;
 //! * [`string`]: a string that is paid out along edges (Wang, Jenkin and Dymond);
 //! * [`team`]: other robots (Bender and Slonim, 1994).
 //!
@@ -16,6 +18,7 @@
 mod action;
 pub mod binoculars;
 pub mod compass;
+pub mod directional_and_movable;
 pub mod markers;
 pub mod pointer;
 pub mod string;
@@ -38,6 +41,7 @@ use crate::{
 
 pub use action::{Action, AidAction, RefusedAction, UnknownAction};
 use binoculars::Binoculars;
+use directional_and_movable::DirectionalAndMovable;
 use markers::MovableMarkers;
 use pointer::MovablePointer;
 use string::LaidString;
@@ -261,6 +265,7 @@ pub enum AidKind {
     Fixed(MarkerKind),
     Markers(MovableMarkers),
     Pointer(MovablePointer),
+    DirectionalAndMovable(DirectionalAndMovable),
     String(LaidString),
     Team(Team),
     Binoculars(Binoculars),
@@ -276,6 +281,7 @@ macro_rules! with_aid {
             }
             AidKind::Markers($aid) => $other,
             AidKind::Pointer($aid) => $other,
+            AidKind::DirectionalAndMovable($aid) => $other,
             AidKind::String($aid) => $other,
             AidKind::Team($aid) => $other,
             AidKind::Binoculars($aid) => $other,
@@ -352,6 +358,7 @@ impl AidKind {
         match sighting {
             Sighting::Nothing => true,
             Sighting::Pointing(_) => matches!(self, Self::Fixed(Directional) | Self::Pointer(_)),
+            Sighting::TwoMarkers(_) => matches!(self, Self::DirectionalAndMovable(_)),
             Sighting::Lying(count) => match self {
                 Self::Fixed(Undirected) => count == 1,
                 Self::Fixed(TwoIdentical) => count <= 2,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{PlacedWorld, quotient::QuotientCode, space::StateLabel};
 use crate::{
     isomorphism::StartCode,
-    percept::{Door, OtherRobot, Sighting, StringView, TeamView},
+    percept::{Door, OtherRobot, Sighting, StringView, TeamView, TwoMarkersView},
 };
 
 /// A placed world that may be ambiguous, with the code of its quotient, as bytes.
@@ -75,6 +75,9 @@ fn push_label(bytes: &mut Vec<u8>, (percept, held): StateLabel) {
         Sighting::Ball(ball) => {
             push(&[9]);
             push(&ball.words());
+        }
+        Sighting::TwoMarkers(TwoMarkersView { along, movable }) => {
+            push(&[11, door(along), movable.into()]);
         }
         Sighting::Compass(view) => {
             push(&[10]);

@@ -279,3 +279,21 @@ impl<W: KeptStart, F: KeptStart> Tally<Option<W>, Option<F>> {
         keep(&mut self.failure, later.failure);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::{ChoicesLimit, Costs, EveryWay};
+
+    #[test]
+    fn each_start_whose_runs_were_not_all_tried_is_counted_once() {
+        let mut tally: Tally = Tally::default();
+        for limit in [None, Some(ChoicesLimit::Memory), Some(ChoicesLimit::States(1))] {
+            let costs = Costs::default();
+            tally.count_every_way(&EveryWay { states: 1, within_rounds: 0, runs: 1, costs, limit });
+        }
+        assert_eq!((tally.over_memory, tally.over_budget, tally.gave_up()), (1, 1, 2));
+        let twice = tally.clone().merged(tally);
+        assert_eq!((twice.over_memory, twice.over_budget, twice.gave_up()), (2, 2, 4));
+    }
+}

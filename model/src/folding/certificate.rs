@@ -185,6 +185,15 @@ mod tests {
         moves
     }
 
+    /// The robot has its back to leaf 0 and comes back from each leaf, but from the last one.
+    #[test]
+    fn the_leaves_of_a_star_are_visited_clockwise() {
+        let leaves = ["a", "b", "c", "d"];
+        let star = [("x", leaves.to_vec())].into_iter().chain(leaves.map(|leaf| (leaf, vec!["x"])));
+        let star = EmbeddedGraph::from_neighbour_lists(&star.collect::<Vec<_>>()).unwrap();
+        assert_eq!(certificate(&star, Dart(0)), [1, 0, 1, 0, 1, 0, 1].map(Door));
+    }
+
     #[test]
     fn a_cycle_a_chain_and_a_star_have_the_lengths_of_the_formula() {
         for count in 3..9 {

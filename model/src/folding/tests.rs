@@ -373,7 +373,71 @@ fn sensed_of_each(
     Some(lengths)
 }
 
+/// Walks may begin anywhere in the same world. The first visit of the second one is after one move more, which was none.
+#[test]
+fn a_second_walk_counts_as_a_move() {
+    let [marked, plain] = [Sighting::Pointing(Door(0)), Sighting::Nothing]
+        .map(|sighting| Percept { degree: 2, sighting });
+    let mut trail = FoldedTrail::new(marked).unwrap();
+    trail.begin_walk(plain).unwrap();
+    assert_eq!((trail.moves(), trail.vertex_count()), (1, 2));
+    trail.step(Door(1), plain).unwrap();
+    trail.step(Door(1), marked).unwrap();
+    assert_eq!((trail.moves(), trail.vertex_count(), trail.open_count()), (3, 3, 2));
+}
+
+/// Doors are counted modulo the degree, however large they are.
+#[test]
+fn a_door_beyond_the_degree_is_one_of_the_first_round() {
+    let percept = Percept { degree: 3, sighting: Sighting::Nothing };
+    let trail = FoldedTrail::new(percept).unwrap();
+    for pose in 0..3 {
+        for door in (0..10).chain([u32::MAX - 2, u32::MAX]) {
+            let dart = Dart((pose + door % 3) % 3);
+            assert_eq!(trail.behind(Dart(pose), Door(door)), dart, "{pose} {door}");
+        }
+    }
+}
+
 proptest! {
+    /// Memory that is kept from an earlier walk, whatever it showed, changes nothing.
+    #[test]
+    fn a_trail_that_is_used_again_is_as_good_as_new(
+        graphs in [any_graph(Class::Multigraph, 6), any_graph(Class::Multigraph, 6)],
+        turns in [prop::collection::vec(any::<u8>(), 0..25), prop::collection::vec(any::<u8>(), 0..25)],
+        wrong in any::<prop::sample::Index>(),
+    ) {
+        let [earlier, later] = [0, 1].map(|one| {
+            walk_with(Directional, &graphs[one], Dart(0), Dart(0), &turns[one])
+        });
+        let mut used = FoldedTrail::default();
+        used.restart(earlier.0[0]).unwrap();
+        for (at, (&door, &percept)) in earlier.1.iter().zip(&earlier.0[1..]).enumerate() {
+            let is_wrong = wrong.index(earlier.1.len()) == at;
+            let degree = percept.degree + u32::from(is_wrong);
+            let senses = ArrivalSenses { length: Some(LengthInterval::exact(at as u32 + 1)), ..Default::default() };
+            if used.step(door, Percept { degree, ..percept }).is_err() || used.sense(senses).is_err() {
+                break;
+            }
+        }
+        used.restart(later.0[0]).unwrap();
+        let mut closed = 0;
+        used.for_each_closed_dart(|_, _| closed += 1);
+        prop_assert_eq!(closed, 0);
+        let mut new = FoldedTrail::new(later.0[0]).unwrap();
+        for (&door, &percept) in later.1.iter().zip(&later.0[1..]) {
+            used.step(door, percept).unwrap();
+            new.step(door, percept).unwrap();
+        }
+        let shown = |trail: &FoldedTrail| {
+            let darts = (0..trail.dart_count() as u32).map(Dart);
+            let lengths: Vec<_> = darts.map(|dart| trail.length(dart)).collect();
+            let counts = (trail.vertex_count(), trail.open_count(), trail.moves(), trail.marker());
+            (trail.seen_from_robot(), counts, lengths)
+        };
+        prop_assert_eq!(shown(&used), shown(&new));
+    }
+
     #[test]
     fn senses_contradict_exactly_if_an_edge_has_two_lengths_or_a_vertex_two_views(
         graph in any_graph(Class::Multigraph, 6),

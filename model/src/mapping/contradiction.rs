@@ -142,7 +142,7 @@ impl fmt::Display for Seen<'_> {
         write!(out, "degree {degree} ")?;
         match sighting {
             Sighting::Nothing => write!(out, "without the marker"),
-            Sighting::Pointing(_) => write!(out, "with the {sighting}"),
+            Sighting::Pointing(_) | Sighting::TwoMarkers(_) => write!(out, "with the {sighting}"),
             Sighting::Lying(1) => write!(out, "with a marker lying there"),
             Sighting::String(_) | Sighting::Team(_) | Sighting::Ball(_) | Sighting::Compass(_) => {
                 write!(out, "with {sighting}")

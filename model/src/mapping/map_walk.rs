@@ -11,7 +11,7 @@ use crate::{
     clone_in_place::clone_in_place,
     embedded_graph::{Dart, MAX_EDGES, Vertex},
     folding::ArrivalSenses,
-    percept::{Door, Percept, Sighting},
+    percept::{Door, Percept, Sighting, TwoMarkersView},
     world::{AidHandler, GraphWorld, SensingWorld, World},
 };
 
@@ -351,7 +351,10 @@ impl MapWalk {
         self.moves += 1;
         let percept = world.percept().map_err(MappingError::World)?;
         let possible = match percept.sighting {
-            Sighting::Pointing(door) => door.0 < percept.degree,
+            Sighting::Pointing(door)
+            | Sighting::TwoMarkers(TwoMarkersView { along: Some(door), .. }) => {
+                door.0 < percept.degree
+            }
             _ => percept.degree > 0,
         };
         world.event(self, MappingEvent::Moved { door, percept });

@@ -5,8 +5,8 @@ use std::{fmt, str::FromStr};
 use super::{ExplorerInfo, MapWalk, Mapped, Observed, Observer, explore};
 use crate::{
     aid::{
-        AIDS, AidKind, markers::MovableMarkers, pointer::MovablePointer, string::LaidString,
-        team::Team,
+        AIDS, AidKind, directional_and_movable::DirectionalAndMovable, markers::MovableMarkers,
+        pointer::MovablePointer, string::LaidString, team::Team,
     },
     marker::Directional,
     world::World,
@@ -22,6 +22,8 @@ pub enum MappingAlgorithm {
     /// The movable marker algorithm, for worlds without loops and parallel edges.
     MovableMarkers(MovableMarkers),
     MovablePointer(MovablePointer),
+    /// The folding explorer, which also carries a marker.
+    DirectionalAndMovable,
     String(LaidString),
     /// With scouts; without headings, for worlds without loops and parallel edges.
     Team(Team),
@@ -32,7 +34,7 @@ macro_rules! with_explorer {
     ($algorithm:expr, $new:ident => $body:expr) => {{
         use $crate::mapping::{
             Algorithm1Run, FoldingRun, MappingAlgorithm, MovableMarkerRun, ShortStringRun, TeamRun,
-            ThreadRun,
+            ThreadRun, WithMovableRun,
         };
         let algorithm: MappingAlgorithm = $algorithm;
         match algorithm {
@@ -46,6 +48,10 @@ macro_rules! with_explorer {
             }
             MappingAlgorithm::MovableMarkers(_) | MappingAlgorithm::MovablePointer(_) => {
                 let $new = move || MovableMarkerRun::with(algorithm.aid());
+                $body
+            }
+            MappingAlgorithm::DirectionalAndMovable => {
+                let $new = WithMovableRun::default;
                 $body
             }
             MappingAlgorithm::String(string) if string.length().is_some() => {
@@ -70,13 +76,17 @@ impl MappingAlgorithm {
     /// All of them: those that map with the directional marker, and one for each aid that moves.
     pub fn all() -> impl Iterator<Item = Self> {
         let string = AidKind::String(LaidString::of_any_length());
-        let moving = AIDS.into_iter().chain([string]).filter_map(|aid| match aid {
-            AidKind::Fixed(_) | AidKind::Binoculars(_) => None,
-            AidKind::Markers(markers) => Some(Self::MovableMarkers(markers)),
-            AidKind::Pointer(pointer) => Some(Self::MovablePointer(pointer)),
-            AidKind::String(string) => Some(Self::String(string)),
-            AidKind::Team(team) => Some(Self::Team(team)),
-        });
+        let moving = AIDS
+            .into_iter()
+            .chain([string, AidKind::DirectionalAndMovable(DirectionalAndMovable)])
+            .filter_map(|aid| match aid {
+                AidKind::Fixed(_) | AidKind::Binoculars(_) => None,
+                AidKind::Markers(markers) => Some(Self::MovableMarkers(markers)),
+                AidKind::Pointer(pointer) => Some(Self::MovablePointer(pointer)),
+                AidKind::DirectionalAndMovable(_) => Some(Self::DirectionalAndMovable),
+                AidKind::String(string) => Some(Self::String(string)),
+                AidKind::Team(team) => Some(Self::Team(team)),
+            });
         Self::with_fixed_marker().chain(moving)
     }
 
@@ -103,6 +113,7 @@ impl MappingAlgorithm {
             Self::Algorithm1 | Self::Folding => AidKind::Fixed(Directional),
             Self::MovableMarkers(markers) => AidKind::Markers(markers),
             Self::MovablePointer(pointer) => AidKind::Pointer(pointer),
+            Self::DirectionalAndMovable => AidKind::DirectionalAndMovable(DirectionalAndMovable),
             Self::String(string) => AidKind::String(string),
             Self::Team(team) => AidKind::Team(team),
         }

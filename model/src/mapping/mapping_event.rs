@@ -153,6 +153,8 @@ pub enum StepPurpose {
         edge: MapDart,
         hypothesis: MapDart,
     },
+    /// The folding explorer carries its movable marker to this vertex of the map.
+    CarryMarker(Vertex),
     /// The folding explorer has followed every dart.
     NoOpenDart,
     Audit,
@@ -184,6 +186,7 @@ impl fmt::Display for StepPurpose {
             Self::Test { edge, hypothesis } => {
                 write!(out, "tests whether {edge} leads to {hypothesis}")
             }
+            Self::CarryMarker(vertex) => write!(out, "carries the marker to vertex v{}", vertex.0),
             Self::NoOpenDart => write!(out, "no dart is open: the map is complete"),
             Self::Audit => write!(out, "audits the map"),
             Self::Audited => write!(out, "the map is complete and audited"),

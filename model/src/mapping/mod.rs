@@ -26,7 +26,7 @@ pub use explorer::{CostOrder, Explorer, ExplorerInfo, StateKey, explore, explore
 pub(crate) use folding_explorer::map_with_recovery;
 pub use folding_explorer::{
     ArrivalMeasurement, EarlierWalk, FoldingRun, FoldingStep, HypothesisTest, MappedWorld,
-    RecoveryConfig, Relocate,
+    RecoveryConfig, Relocate, WithMovableRun, WithMovableStep,
 };
 pub use map_walk::{DEFAULT_DART_BOUND, MapWalk, Mapped, Observed, ObservedWorld, Observer};
 pub use mapping_algorithm::MappingAlgorithm;

@@ -4,7 +4,9 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use super::{Door, MARKER_NAMES, MarkerSet, OtherRobot, Sighting, StringView, TeamView};
+use super::{
+    Door, MARKER_NAMES, MarkerSet, OtherRobot, Sighting, StringView, TeamView, TwoMarkersView,
+};
 
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
@@ -26,7 +28,10 @@ impl FromStr for Sighting {
             "past the mark" => Some(Self::Passed),
             "past the mark, along its arrow" => Some(Self::PassedAlong),
             "past the mark, against its arrow" => Some(Self::PassedAgainst),
-            _ => markers(text).or_else(|| team(text)).or_else(|| string(text)),
+            _ => markers(text)
+                .or_else(|| two_markers(text))
+                .or_else(|| team(text))
+                .or_else(|| string(text)),
         };
         let sighting = sighting.filter(|sighting| sighting.to_string() == text);
         sighting.ok_or_else(|| UnknownSighting(text.to_owned()))
@@ -44,6 +49,18 @@ fn markers(text: &str) -> Option<Sighting> {
     let numbers = names.map(|name| MARKER_NAMES.iter().position(|known| *known == name));
     let numbers: Option<Vec<_>> = numbers.collect();
     MarkerSet::from_numbers(numbers?).map(Sighting::These)
+}
+
+fn two_markers(text: &str) -> Option<Sighting> {
+    let mut view = TwoMarkersView::default();
+    for part in text.split(", ") {
+        match part.strip_prefix("directional marker along ") {
+            Some(door) => view.along = Some(door_of(door)?),
+            None if part == "movable marker" => view.movable = true,
+            None => return None,
+        }
+    }
+    Some(Sighting::TwoMarkers(view))
 }
 
 fn string(text: &str) -> Option<Sighting> {
@@ -147,6 +164,13 @@ mod tests {
                 let numbers = (0..8).filter(|at| bits >> at & 1 == 1);
                 Sighting::These(MarkerSet::from_numbers(numbers).unwrap())
             }),
+            (prop::option::of(any::<u32>()), any::<bool>()).prop_filter_map(
+                "one of the markers is here",
+                |(door, movable)| {
+                    let view = TwoMarkersView { along: door.map(Door), movable };
+                    (view != TwoMarkersView::default()).then_some(Sighting::TwoMarkers(view))
+                },
+            ),
             string,
             (other(), prop::option::of(other())).prop_map(|(second, third)| {
                 Sighting::Team(TeamView([second, third.unwrap_or_default()]))
@@ -177,6 +201,8 @@ mod tests {
             "1 markers",
             "0 markers",
             "third and first marker",
+            "movable marker, directional marker along door 1",
+            "movable marker, movable marker",
             "string through doors 1",
             "string through doors 2 and 1",
             "string through door 40",

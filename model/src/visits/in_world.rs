@@ -8,6 +8,7 @@ use crate::{
     aid::State,
     embedded_graph::{Dart, EmbeddedGraph},
     marker::Marker,
+    percept::Door,
     world::GraphWorld,
 };
 
@@ -69,6 +70,47 @@ pub fn alternatives_left(
         fitting = earlier;
     }
     left
+}
+
+/// An alternative that is chosen of a visit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChosenAlternative {
+    /// Among the visit's [alternatives](VisitSet::alternatives).
+    pub number: usize,
+    /// The door by which the robot left, if the alternative does not say it.
+    pub door: Option<Door>,
+}
+
+/// A choice that fits the world, and the state at its start; `None` if no choice does.
+pub fn choice_in_world(
+    graph: &EmbeddedGraph,
+    marker: &impl Marker,
+    starts: &[State],
+    visits: &[VisitSet],
+) -> Option<(State, Vec<ChosenAlternative>)> {
+    let after = states_after(graph, marker, starts, visits);
+    let Some(last) = after.last() else { return Some((*starts.first()?, Vec::new())) };
+    let mut state = *last.first()?;
+    let mut choice = Vec::with_capacity(visits.len());
+    for (index, visit) in visits.iter().enumerate().rev() {
+        let before = index.checked_sub(1).map_or(starts, |before| after[before].as_slice());
+        let is_last = index + 1 == visits.len();
+        let step = &VisitStep { graph, marker, way: visit.way(), is_last };
+        let alternatives = || visit.alternatives().iter().copied().enumerate();
+        let (earlier, chosen) = before.iter().find_map(|&earlier| {
+            alternatives().find_map(|(number, alternative)| {
+                let at =
+                    step.after(earlier, alternative).iter().position(|&found| found == state)?;
+                let open = alternative.filter(|chosen| chosen.door.is_none() && !is_last);
+                let door = open.and_then(|chosen| chosen.doors().nth(at));
+                Some((earlier, ChosenAlternative { number, door }))
+            })
+        })?;
+        state = earlier;
+        choice.push(chosen);
+    }
+    choice.reverse();
+    Some((state, choice))
 }
 
 /// A visit in a world.

@@ -15,7 +15,7 @@ mod in_world;
 
 pub use by_algorithm::{AlgorithmSearchBounds, explain_by_algorithm};
 pub use in_some_world::{Explanation, explain};
-pub use in_world::{alternatives_left, states_after};
+pub use in_world::{ChosenAlternative, alternatives_left, choice_in_world, states_after};
 
 use crate::percept::{Door, Percept};
 

@@ -21,7 +21,7 @@ let door name = function None -> [ name ] | Some door -> [ name; string_of_int (
 let words = List.map string_of_int
 
 (* How the actions of an aid are read, and how what it shows is written: a number of markers, markers that look
-   different, a directional marker, other robots, a string. *)
+   different, a directional marker, one beside a movable marker, other robots, a string. *)
 
 let holding = function
   | "pick-up" -> PickUp
@@ -37,6 +37,8 @@ let sending action = Scanf.sscanf action "send-%d:%d%!" (fun robot door -> Send 
 let alike (count : nat) = [ string_of_int (int count) ]
 let distinct shown = words (List.concat (List.mapi (fun at here -> if here then [ at + 1 ] else []) shown))
 let directional (along : nat option) = if along = None then [] else door "along" along
+
+let both (along, is_here) = directional along @ if is_here then [ "movable" ] else []
 
 let team shown =
   let robot = function
@@ -71,6 +73,7 @@ let of_aid name =
   match String.split_on_char '-' name with
   | [ "movable" ] -> along (along_alike (nat 1)) holding alike
   | [ "movable"; "directional" ] -> along along_directional holding directional
+  | [ "movable+directional" ] -> along along_both holding both
   | [ "movable"; count ] -> along (along_alike (nat (int_of_string count))) holding alike
   | [ "movable"; count; "distinct" ] -> along (along_distinct (nat (int_of_string count))) holding_one distinct
   | [ "string"; length ] -> along (along_string (nat (int_of_string length))) holding laid

@@ -162,8 +162,20 @@ let rec walk knowledge (visit, door) = function
           let way, out = walk knowledge (to_dart knowledge.trail found) later in
           (found :: way, out))
 
+(* The edges of the trail that the robot goes along by these doors until it goes out by a dart. *)
+let rec way_to knowledge dart (visit, door) = function
+  | [] -> failwith "the walk does not lead over the edge"
+  | next :: later -> (
+      let rec plus = function O -> door | S n -> S (plus n) in
+      let out = (visit, plus next) in
+      if stands_for knowledge out = stands_for knowledge dart then []
+      else
+        match passage knowledge out with
+        | None -> failwith "the way to the edge is not known"
+        | Some found -> found :: way_to knowledge dart (to_dart knowledge.trail found) later)
+
 (* The action that the robot took; or, before it, that it finds the far end of an edge in its trail. *)
-let action_of knowledge given =
+let action_of is_strict knowledge given =
   let noticed edge action =
     match (far_end knowledge edge, passage knowledge (dart_in_trail knowledge edge)) with
     | Some far, _ -> (action far, true)
@@ -176,6 +188,10 @@ let action_of knowledge given =
       (Explore (edge, Through way), true)
   | Joined (edge, other) -> noticed edge (fun _ -> Join (edge, other))
   | Added edge -> noticed edge (fun _ -> Add edge)
+  | Tested (edge, other, doors) when is_strict ->
+      noticed edge (fun _ ->
+          let way = way_to knowledge (dart_in_trail knowledge edge) knowledge.here doors in
+          Test (edge, other, Strict (Through way, path_to_marker knowledge.known_map other)))
   | Tested (edge, other, doors) ->
       noticed edge (fun far ->
           let way, out = walk knowledge knowledge.here doors in
@@ -186,7 +202,7 @@ let action_of knowledge given =
           | Some entry ->
               Test (edge, other, Free (way, out, entry, path_to_marker map entry)))
 
-let rec run_given start (last, given) state = function
+let rec run_given is_strict start (last, given) state = function
   | Complete knowledge ->
       if given <> [] then failwith "there are more actions than the run needs";
       let moves = [ list "moves" [ string_of_int (int knowledge.made) ] ] in
@@ -197,18 +213,19 @@ let rec run_given start (last, given) state = function
       let door = int door in
       let pose = traverse start state.pose door in
       let state = { state with pose; did = string_of_int door :: state.did } in
-      run_given start (last, given) state (go (percept start (pointing 0) pose))
+      run_given is_strict start (last, given) state (go (percept start (pointing 0) pose))
   | Asking (knowledge, ask) -> (
       match given with
       | [] -> failwith "there are fewer actions than the run needs"
       | (text, next) :: later ->
-          let action, is_all = action_of knowledge next in
-          run_given start (text, if is_all then later else given) state (ask action))
+          let action, is_all = action_of is_strict knowledge next in
+          run_given is_strict start (text, if is_all then later else given) state (ask action))
 
-let run_folding start given =
+let run_folding is_strict start given =
   let edges = Array.length start.opposite / 2 in
   let seen = percept start (pointing 0) facing in
-  run_given start ("", given) begun (folding_mapping (nat (2 * edges * (edges + 1))) seen)
+  let mapping = if is_strict then strict_folding_mapping else folding_mapping in
+  run_given is_strict start ("", given) begun (mapping (nat (2 * edges * (edges + 1))) seen)
 
 let words text = List.filter (( <> ) "") (String.split_on_char ' ' text)
 
@@ -230,8 +247,8 @@ let run_line line =
   | [ [ algorithm ]; "opposite" :: opposite; "clockwise" :: clockwise; last :: rest ] -> (
       let start = { opposite = darts opposite; clockwise = darts clockwise } in
       match (algorithm, last, rest) with
-      | "folding", "actions", _ ->
-          run_folding start
+      | ("folding" | "strict-folding"), "actions", _ ->
+          run_folding (algorithm = "strict-folding") start
             (List.map given (String.split_on_char ',' (String.concat " " rest)))
       | _, "choices", [ "default" ] -> run_from algorithm start Default
       | _, "choices", [ "all" ] -> run_from algorithm start All

@@ -23,6 +23,10 @@ fn shown(aid: AidKind, sighting: Sighting) -> Vec<String> {
         },
         Sighting::Pointing(along) => door("along", along).into(),
         Sighting::Lying(count) => vec![count.to_string()],
+        Sighting::TwoMarkers(view) => {
+            let along = view.along.into_iter().flat_map(|along| door("along", along));
+            along.chain(view.movable.then(|| "movable".to_owned())).collect()
+        }
         Sighting::These(markers) => markers.numbers().map(|at| (at + 1).to_string()).collect(),
         Sighting::String(view) => {
             let ends = [("fixed", view.fixed_end), ("free", view.free_end)];
@@ -63,9 +67,10 @@ fn candidates(aid: AidKind, graph: &EmbeddedGraph) -> Vec<Action> {
         AidKind::Markers(markers) if !markers.are_alike() => (1..=markers.count())
             .flat_map(|one| [AidAction::PickUpMarker(one), AidAction::DropMarker(one)])
             .collect(),
-        AidKind::Markers(_) | AidKind::Pointer(_) | AidKind::String(_) => {
-            vec![AidAction::PickUp, AidAction::Drop]
-        }
+        AidKind::Markers(_)
+        | AidKind::Pointer(_)
+        | AidKind::String(_)
+        | AidKind::DirectionalAndMovable(_) => vec![AidAction::PickUp, AidAction::Drop],
         AidKind::Team(team) => (2..=team.robots())
             .flat_map(|robot| doors().map(move |door| AidAction::Send { robot, door }))
             .collect(),

@@ -178,6 +178,9 @@ fn what_is_left_out_or_assumed_is_refused() {
         ("parameter", "(* (* *) \" *) \" *) Parameter absurd : False.", "Parameter"),
         ("variable", "Section S. End S. Variable absurd : False.", "Variable outside a section"),
         ("guard", "Unset Guard Checking.", "Guard Checking"),
+        ("schemes", "Unset Elimination Schemes.", "Unset Elimination"),
+        ("instance", "Declare Instance absurd : False.", "Declare Instance"),
+        ("load", "Load \"absurd\".", "Load"),
     ] {
         let change = |text: &str| format!("{text}\n{added}\n");
         let changed = Changed::new(name, "Program.v", change, whole);
@@ -186,6 +189,15 @@ fn what_is_left_out_or_assumed_is_refused() {
         let why = "violated: a proof is left out, or something is assumed";
         assert_eq!(stdout, format!("Program.v:{line}: {found}\n\n{why}"));
     }
+}
+
+/// What was compiled with other options is compiled again: without Coq's own library nothing is accepted.
+#[test]
+#[ignore = "it needs Coq: `.ci/run --all`"]
+fn what_was_compiled_with_other_options_is_not_kept() {
+    let other = |options: &str| format!("{options}-arg -noinit\n");
+    let (stdout, _) = Changed::new("options", "_CoqProject", other, compiled()).violated();
+    assert_eq!(stdout, "violated: Coq does not accept the development");
 }
 
 #[test]

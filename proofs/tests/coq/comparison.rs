@@ -114,17 +114,22 @@ pub(super) fn known(run: &impl Explorer) -> String {
 }
 
 /// Random choices. The same seed makes the same ones.
-struct Random(TestRng);
+pub(super) struct Random(TestRng);
 
 impl Random {
-    fn new(seed: u8) -> Self {
+    pub(super) fn new(seed: u8) -> Self {
         Self(TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]))
+    }
+
+    /// A start with so many edges.
+    pub(super) fn start_of<const LEAST: usize, const MOST: usize>(&mut self) -> EmbeddedGraph {
+        draw::start_of::<LEAST, MOST>(self).unwrap()
     }
 
     /// A start with 10 to 40 edges, simple if the algorithm needs that.
     fn start(&mut self, mapping: Mapping) -> EmbeddedGraph {
         loop {
-            let start = draw::start_of::<10, 40>(self).unwrap();
+            let start = self.start_of::<10, 40>();
             let start = match mapping {
                 Mapping::Directional => start,
                 Mapping::Movable => subdivided(start),

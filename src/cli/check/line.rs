@@ -77,6 +77,9 @@ pub(super) struct SizeLine {
     pub(super) max_states: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) shard: Option<String>,
+    /// With --proof: SHA-256 of the proofs of all runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) proofs_sha256: Option<String>,
     /// Of a shard: the version of the program.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) version: Option<String>,

@@ -14,6 +14,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::{Interrupted, Watch},
     format::named_world::NamedWorld,
+    proof::{Claim, NotProved, Proof, WalkPair},
 };
 
 use super::{CliError, walk_page};
@@ -139,6 +140,30 @@ impl<'w> RobotComparison<'w> {
     pub(super) fn starts_text(&self) -> [String; 2] {
         let [pose, other] = self.poses();
         [self.worlds[0].start_text(pose), self.worlds[1].start_text(other)]
+    }
+
+    /// That no walk distinguishes the robots, or that for each start in B a walk does; and a claim about the graphs.
+    ///
+    /// # Errors
+    /// Returns an error if the marking aid moves.
+    pub(super) fn proof(&self, of_graphs: Claim) -> Result<Proof<'w>, NotProved> {
+        let marker = self.marker.fixed().ok_or(NotProved::Aid(self.marker.name()))?;
+        let claim = match &self.bisimulation {
+            Some(_) => Claim::indistinguishable(&self.comparison, self.poses()),
+            None => Claim::Distinguishable {
+                walks: self
+                    .others
+                    .iter()
+                    .filter_map(|(pose, walk)| {
+                        Some(WalkPair::new([self.start, *pose], walk.as_ref()?))
+                    })
+                    .collect(),
+            },
+        };
+        let [a, b] = self.worlds;
+        let facing = |world: &'w NamedWorld| (&world.graph, world.start.unwrap_or(Dart(0)));
+        let worlds = vec![facing(a), facing(b)];
+        Ok(Proof { worlds, marker, seen: None, claims: vec![of_graphs, claim] })
     }
 
     /// A pair of states in words.

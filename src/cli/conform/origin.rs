@@ -1,10 +1,11 @@
 //! How a report was made: the version, the command, and the hashes of the files.
 
-use std::{env, fmt::Write as _, io, path::Path};
+use std::{env, io, path::Path};
 
 use sha2::{Digest, Sha256};
 
 use toposlam_conform::SourceFile;
+use toposlam_logs::hexadecimal;
 
 use super::CliError;
 use crate::{
@@ -35,11 +36,7 @@ pub(super) fn sources(log: &Path, world: Option<&Path>) -> Result<Vec<SourceFile
 fn sha256(path: &Path) -> io::Result<String> {
     let mut digest = HashWriter(Sha256::new());
     io::copy(&mut input::open_again(path)?, &mut digest)?;
-    Ok(digest.0.finalize().iter().fold(String::new(), |mut text, byte| {
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    }))
+    Ok(hexadecimal(&digest.0.finalize()))
 }
 
 /// What is written is hashed.

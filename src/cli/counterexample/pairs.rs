@@ -7,6 +7,7 @@ use toposlam_model::{
     ambiguity::{Comparison, Findings, PlacedWorld, Unfinished},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
+    proof::{Claim, NotProved, Proof},
 };
 
 use crate::{
@@ -70,6 +71,27 @@ impl WorldPairs {
         let comparison = Comparison::new(marker, (&one.graph, start), (&other.graph, start));
         let pose = comparison.start_like(start).unwrap_or(start);
         walk_page::write(path, &WalkPage { worlds, facings: [start, start], pose, marker })
+    }
+
+    /// The proofs of the pairs: that no walk distinguishes their worlds, and if these differ without their markers, that.
+    ///
+    /// # Errors
+    /// Returns an error if the marking aid moves.
+    pub(super) fn proofs(&self, aid: AidKind) -> Result<String, NotProved> {
+        let marker = aid.fixed().ok_or(NotProved::Aid(aid.name()))?;
+        let start = PlacedWorld::FACING;
+        let proof = |worlds: [&NamedWorld; 2]| {
+            let graphs = worlds.map(|world| &world.graph);
+            let [one, other] = graphs.map(|graph| (graph, start));
+            let comparison = Comparison::new(marker, one, other);
+            let pose = comparison.start_like(start).unwrap_or(start);
+            let differ = Claim::isomorphism(graphs[0], graphs[1]);
+            let differ = Some(differ).filter(|claim| matches!(claim, Claim::NotIsomorphic { .. }));
+            let alike = Claim::indistinguishable(&comparison, [start, pose]);
+            let claims = differ.into_iter().chain([alike]).collect();
+            Proof { worlds: vec![one, other], marker, seen: None, claims }.to_string()
+        };
+        Ok(self.pairs().into_iter().map(proof).collect())
     }
 
     /// Writes each world into a file that has its name.

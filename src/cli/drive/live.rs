@@ -81,7 +81,7 @@ impl DriveArguments {
         // The robot is dropped last: the node of these topics belongs to it.
         drop(published);
         drop(robot);
-        capture.finish()?;
+        let walk = capture.finish()?;
         logged?;
         let run = RobotRun {
             method: settings.method,
@@ -112,7 +112,7 @@ impl DriveArguments {
             report.print(out, &run, &[run.ending("complete", "complete")])?;
         }
         let map = run.map("map", "The map of an unknown world, made by a live robot");
-        self.options.write_map(map.as_ref())?;
+        self.options.write_map(map.as_ref(), &walk)?;
         Ok(run.outcome(self.options.allows_blocked()))
     }
 

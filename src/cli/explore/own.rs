@@ -4,8 +4,13 @@ use std::io::Write;
 
 use serde::Serialize;
 use toposlam_model::{
-    embedded_graph::Dart, folding::certificate_length, format::named_world::NamedWorld,
+    embedded_graph::Dart,
+    folding::certificate_length,
+    format::named_world::NamedWorld,
     isomorphism::Candidate,
+    mapping::FACING,
+    marker::Directional,
+    proof::{Proof, Walk},
 };
 
 use super::ExploreArguments;
@@ -64,6 +69,11 @@ impl ExploreArguments {
                 String::new()
             }
         };
+        let walk = || {
+            let doors: Vec<_> = run.actions.iter().filter_map(|action| action.door()).collect();
+            Walk::in_world((graph, facing), Directional, facing, &doors)
+        };
+        let walk = (self.proof.path().is_some() && run.result.is_ok()).then(walk);
         let mut run = ReportedRun::new(run, stderr);
         if cause == Some(ExplorerFault::GUESSED) {
             run.find_other_world((graph, facing), self.marker);
@@ -102,6 +112,10 @@ impl ExploreArguments {
         }
         if let Some(map) = run.map() {
             self.write_map(&map, moves, false)?;
+            if let Some(walk) = walk {
+                let start = map.start.unwrap_or(FACING);
+                self.proof.write(|| Ok(vec![Proof::of_map(&map.graph, start, walk)?]))?;
+            }
         } else if !self.map.is_empty() {
             remark!("the map is not written: there is none");
         }

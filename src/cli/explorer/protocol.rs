@@ -6,7 +6,7 @@ use toposlam_model::{
     aid::Action,
     embedded_graph::Dart,
     mapping::{ExploredMap, Flaw},
-    percept::{Door, OtherRobot, Percept, Sighting, StringView, TeamView},
+    percept::{Door, OtherRobot, Percept, Sighting, StringView, TeamView, TwoMarkersView},
 };
 
 use super::fault::ExplorerFault;
@@ -33,6 +33,9 @@ pub(super) fn percept_line(percept: Percept) -> String {
         Sighting::Team(TeamView(others)) => {
             let robots: Vec<_> = others.into_iter().filter_map(other_robot).collect();
             json!({ "robots": robots }).to_string()
+        }
+        Sighting::TwoMarkers(TwoMarkersView { along, movable }) => {
+            json!({ "along": along.map(|door| door.0), "movable": movable }).to_string()
         }
         Sighting::Ball(ball) => json!({ "ball": ball.behind() }).to_string(),
         Sighting::Compass(view) => json!(view.to_string()).to_string(),

@@ -124,10 +124,6 @@ impl ExplorerStart<'_> {
 }
 
 /// The doors that were taken.
-pub(in crate::cli) fn doors_of(actions: &[Action]) -> Vec<Door> {
-    let door = |action: &Action| match action {
-        Action::Take(door) => Some(*door),
-        Action::Do(_) => None,
-    };
-    actions.iter().filter_map(door).collect()
+pub(super) fn doors_of(actions: &[Action]) -> Vec<Door> {
+    actions.iter().filter_map(|action| action.door()).collect()
 }

@@ -19,6 +19,7 @@ mod steps;
 mod walk;
 mod walks;
 mod ways;
+mod with_movable;
 
 use std::cmp::Reverse;
 
@@ -39,6 +40,7 @@ pub use recovery::{MappedWorld, RecoveryConfig, Relocate};
 use settle::Hypotheses;
 pub use walks::{ArrivalMeasurement, EarlierWalk};
 use ways::Ways;
+pub use with_movable::{WithMovableRun, WithMovableStep};
 
 /// What the robot does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,11 +56,11 @@ pub struct HypothesisTest {
     pub cost: usize,
     /// The moves from the place of the hypothesis to the marker, through the map.
     distance: u32,
-    /// The moves to the open dart. The rest of the way is through the map.
+    /// The moves to the dart that is taken. The rest of the way is through the map.
     approach: usize,
     /// The dart of the map by which the pending place is entered, if the hypothesis is true.
     pub hypothesis: Dart,
-    /// The open dart of the trail that is taken.
+    /// The dart of the trail that is taken. It is open, unless the test is strict.
     open: Dart,
     pub edge: Dart,
     /// The dart of the map by which the robot then comes in, if the hypothesis is true.
@@ -119,7 +121,7 @@ clone_in_place!(FoldingRun {
 has_walk!(FoldingRun);
 
 impl FoldingRun {
-    /// An exploration that only makes strict tests: from the place itself, along the whole way to the
+    /// An exploration that only makes strict tests: over the edge to the place itself, and along the whole way to the
     /// marker, as Algorithm 1 does. It needs more moves.
     pub fn strict() -> Self {
         Self { strict: true, ..Self::default() }

@@ -4,13 +4,15 @@ use std::{cmp::Reverse, collections::BinaryHeap, iter, mem};
 
 use super::{FoldingRun, FoldingStep, HypothesisTest, Pending};
 use crate::{
-    embedded_graph::Dart, folding::FoldedTrail, injected_flaw::InjectedFlaw,
-    mapping::partial_map::START,
+    embedded_graph::Dart,
+    folding::FoldedTrail,
+    injected_flaw::InjectedFlaw,
+    mapping::{partial_map::START, tree::BreadthFirstTree},
 };
 
 /// The most moves of a test that the robot prefers to the nearest open dart of the map. The figures are the best
 /// that were tried.
-fn worthwhile(moves_to_open: usize) -> usize {
+pub(super) fn worthwhile(moves_to_open: usize) -> usize {
     8 * moves_to_open + 2
 }
 
@@ -110,7 +112,7 @@ impl FoldingRun {
         test.map(FoldingStep::Test).or(explore)
     }
 
-    fn is_late(&self) -> bool {
+    pub(super) fn is_late(&self) -> bool {
         self.strict || self.trail.moves() > self.patience()
     }
 
@@ -124,7 +126,9 @@ impl FoldingRun {
     /// marker. Of walks of one cost it is that of the hypothesis nearest to the marker, then with the nearest
     /// open dart, then of the first hypothesis, and with the first open dart of the trail.
     fn cheapest_test(&mut self, pending: Pending, most: usize) -> Option<HypothesisTest> {
-        self.list_tests(pending, most);
+        let to_marker = mem::take(&mut self.to_marker);
+        self.list_tests(pending, most, &to_marker);
+        self.to_marker = to_marker;
         let mut tests = BinaryHeap::from(mem::take(&mut self.tests));
         let found =
             iter::from_fn(|| tests.pop()).find(|Reverse(test)| self.confirms(pending, test));
@@ -132,12 +136,17 @@ impl FoldingRun {
         found.map(|Reverse(test)| test)
     }
 
-    /// Lists the walks that lead to the marker if a hypothesis about a place is true: to an open dart
-    /// that would then lead to a place of the map, over it, and through the map to the marker, in at most
-    /// `most` moves.
-    fn list_tests(&mut self, pending: Pending, most: usize) {
+    /// Lists the walks that lead to the marker at the root of a tree if a hypothesis about a place is true: to an open
+    /// dart that would then lead to a place of the map, over it, and through the map to the marker, in at most `most`
+    /// moves.
+    pub(super) fn list_tests(
+        &mut self,
+        pending: Pending,
+        most: usize,
+        to_marker: &BreadthFirstTree,
+    ) {
         let Pending { edge, far, is_leaf } = pending;
-        let Self { trail, walk, to_marker, from_robot, hypotheses, tests, .. } = self;
+        let Self { trail, walk, from_robot, hypotheses, tests, .. } = self;
         tests.clear();
         let degree = trail.degree(far);
         for &hypothesis in &self.unexplored {
@@ -189,30 +198,19 @@ impl FoldingRun {
         forced == Ok(true) || InjectedFlaw::ProofByOtherWalk.is_present()
     }
 
-    /// The walk from a pending place along the way to the marker that the first hypothesis predicts, as
-    /// in Algorithm 1.
+    /// The walk over the edge of a pending place, and along the way to the marker that the first hypothesis predicts, as in
+    /// Algorithm 1.
     fn strict_test(&mut self, pending: Pending) -> Option<HypothesisTest> {
-        let Pending { edge, far, .. } = pending;
         let all = mem::take(&mut self.unexplored);
         let hypothesis = all.iter().copied().find(|&dart| self.is_alive(pending, dart));
         self.unexplored = all;
         let hypothesis = hypothesis?;
         let distance = self.to_marker.hops(self.map().vertex(hypothesis));
-        let (mut pose, mut believed) = (far, hypothesis);
-        loop {
-            let cost = self.to_marker.hops(self.map().vertex(believed)) as usize;
-            let (door, entry) = self.to_marker.toward_root(self.map(), believed)?;
-            let open = self.trail.behind(pose, door);
-            match self.trail.opposite(open) {
-                None => {
-                    let approach = self.from_robot.moves_to(&self.trail, open);
-                    let test =
-                        HypothesisTest { cost, distance, approach, hypothesis, open, edge, entry };
-                    return Some(test);
-                }
-                Some(next) => (pose, believed) = (next, entry),
-            }
-        }
+        let edge = pending.edge;
+        let open = self.in_trail[edge.at()];
+        let approach = self.from_robot.moves_to(&self.trail, open);
+        let (cost, entry) = (distance as usize, hypothesis);
+        Some(HypothesisTest { cost, distance, approach, hypothesis, open, edge, entry })
     }
 
     fn find_ways_to_marker(&mut self) {

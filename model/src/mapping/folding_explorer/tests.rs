@@ -76,3 +76,13 @@ fn the_judge_finds_each_flaw_of_lengths_on_a_small_start() {
     assert_eq!(first_failure_with(of_dart, None), Some(failure));
     assert_eq!(first_failure_with(of_dart, Some(LengthsNotCompared)), None);
 }
+
+#[test]
+fn the_judge_finds_a_movable_marker_that_is_taken_for_a_pose_on_a_small_start() {
+    let failure = |flaw| injected_failure(flaw, WithMovableRun::default(), Class::Multigraph, 5);
+    assert_eq!(failure(None), None);
+    let turned = "after 39 moves: the world contradicts itself: the junction after 5 moves would be turned \
+                      onto itself";
+    let expected = (5, vec![new(2), new(3), 3, new(5), 9, 8], turned.to_owned());
+    assert_eq!(failure(Some(InjectedFlaw::VertexTakenForPose)), Some(expected));
+}

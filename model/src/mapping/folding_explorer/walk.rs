@@ -7,7 +7,10 @@ use crate::{
     embedded_graph::Dart,
     folding::TrailError,
     injected_flaw::InjectedFlaw,
-    mapping::{Contradiction, FoldingEvent, Mapped, MappingError, MappingEvent, ObservedWorld},
+    mapping::{
+        Contradiction, FoldingEvent, Mapped, MappingError, MappingEvent, ObservedWorld, PartialMap,
+        tree::BreadthFirstTree,
+    },
     percept::{Door, Percept},
 };
 
@@ -26,35 +29,53 @@ impl FoldingRun {
         test: HypothesisTest,
         world: &mut W,
     ) -> Mapped<W> {
+        let to_marker = mem::take(&mut self.to_marker);
+        let walked = self.walk_to_root(test, &to_marker, world, |_, _, _| true);
+        self.to_marker = to_marker;
+        if walked? && InjectedFlaw::ProofByOtherWalk.is_present() {
+            self.believe(test)?;
+        }
+        Ok(())
+    }
+
+    /// Walks to the root of a tree as if a hypothesis were true, until it is confirmed or refuted. Returns whether it
+    /// is confirmed. `agrees` is asked at each place whether the robot may have come in by that dart of the map.
+    pub(super) fn walk_to_root<W: ObservedWorld>(
+        &mut self,
+        test: HypothesisTest,
+        to_root: &BreadthFirstTree,
+        world: &mut W,
+        agrees: impl Fn(&PartialMap, Dart, &W) -> bool,
+    ) -> Mapped<W, bool> {
         let HypothesisTest { edge, hypothesis, cost, open, entry, .. } = test;
         self.report(FoldingEvent::Testing { edge, hypothesis, cost }, world);
-        let mut before = self.trail.vertex_count() + 1;
+        let is_new = self.trail.opposite(open).is_none();
+        let mut before = self.trail.vertex_count() + usize::from(is_new);
         let mut perceived = self.take_open(open, world)?;
         let mut believed = entry;
-        loop {
+        let is_confirmed = loop {
             let expected = self.map().expected(believed);
             let pose = self.trail.pose();
-            if perceived != expected || !self.trail.senses_agree(pose, self.in_trail[believed.at()])
+            if perceived != expected
+                || !self.trail.senses_agree(pose, self.in_trail[believed.at()])
+                || !agrees(self.map(), believed, world)
             {
                 self.hypotheses.refute(edge, hypothesis);
                 let event = FoldingEvent::Refuted { edge, hypothesis, expected, perceived };
                 self.report(event, world);
-                break;
+                break false;
             }
-            let Some((door, next)) = self.to_marker.toward_root(self.map(), believed) else {
+            let Some((door, next)) = to_root.toward_root(self.map(), believed) else {
                 self.report(FoldingEvent::Confirmed { edge, hypothesis }, world);
-                if InjectedFlaw::ProofByOtherWalk.is_present() {
-                    self.believe(test)?;
-                }
-                break;
+                break true;
             };
             let open = self.trail.opposite(self.trail.behind(self.trail.pose(), door)).is_none();
             before = self.trail.vertex_count() + usize::from(open);
             perceived = self.go_through(door, world)?;
             believed = next;
-        }
+        };
         self.report_folding(before, world);
-        Ok(())
+        Ok(is_confirmed)
     }
 
     /// Takes a hypothesis as true, as an [`InjectedFlaw`].
@@ -109,7 +130,7 @@ impl FoldingRun {
     }
 
     /// Reports that the trail has fewer vertices, if it has: the robot has seen the marker.
-    fn report_folding(&self, before: usize, world: &mut impl ObservedWorld) {
+    pub(super) fn report_folding(&self, before: usize, world: &mut impl ObservedWorld) {
         let after = self.trail.vertex_count();
         if after < before {
             self.report(FoldingEvent::Folded { before, after }, world);

@@ -1,0 +1,157 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::{
+    any_graph::{Class, any_graph},
+    folding::FoldedTrail,
+    mapping::MappingMethod,
+    marker::{MARKERS, NoMarker, Undirected},
+    percept::{Door, Percept, Sighting},
+    world::GraphWorld,
+};
+
+/// How folded trails end: the number of open darts, or the visit that contradicts those before it.
+fn end_of_trail(walk: &Walk) -> Result<usize, usize> {
+    let mut trail = FoldedTrail::new(walk.percepts()[0]).map_err(|_| 0_usize)?;
+    for (move_, (&door, &percept)) in walk.doors().iter().zip(&walk.percepts()[1..]).enumerate() {
+        trail.step(door, percept).map_err(|_| move_ + 1)?;
+    }
+    Ok(trail.open_count())
+}
+
+fn end_of_steps(walk: &Walk, marker: MarkerKind) -> Result<usize, usize> {
+    match fold_walk(walk, marker).end {
+        WalkEnd::Complete => Ok(0),
+        WalkEnd::Open(open) => Ok(open),
+        // Folded trails leave it to their users.
+        WalkEnd::Contradiction { contradiction: Contradiction::Unmarked, .. } => Ok(0),
+        WalkEnd::Contradiction { visit, .. } => Err(visit),
+    }
+}
+
+/// The text in `docs/proofs-of-verdicts.md`.
+#[test]
+fn the_proof_of_two_parallel_edges_is_that_of_the_page() {
+    let ring = EmbeddedGraph::cycle(2);
+    let walk = Walk::in_world((&ring, Dart(0)), Directional, Dart(0), &[Door(1), Door(1)]);
+    let proof = Proof::of_map(&ring, Dart(0), walk).unwrap().to_string();
+    let page = include_str!("../../../docs/proofs-of-verdicts.md");
+    assert!(page.contains(&format!("```text\n{proof}```")), "{proof}");
+}
+
+#[test]
+fn a_walk_that_leaves_a_door_open_has_no_proof() {
+    let ring = EmbeddedGraph::cycle(3);
+    let walk = Walk::in_world((&ring, Dart(0)), Directional, Dart(0), &[Door(1), Door(1)]);
+    assert_eq!(Proof::of_map(&ring, Dart(0), walk).unwrap_err(), NotProved::Open(2));
+}
+
+#[test]
+fn what_a_marker_never_shows_is_a_contradiction() {
+    let seen = |sighting| {
+        let walk = Walk::new(&[Percept { degree: 2, sighting }], &[]).unwrap();
+        move |marker| end_of_steps(&walk, marker).is_err()
+    };
+    let pointing = seen(Sighting::Pointing(Door(1)));
+    assert!(!pointing(Directional) && pointing(Undirected) && pointing(NoMarker));
+    assert!(seen(Sighting::Pointing(Door(2)))(Directional));
+    let lying = seen(Sighting::Lying(1));
+    assert!(!lying(Undirected) && lying(Directional));
+}
+
+#[test]
+fn without_a_place_for_the_marker_no_world_gives_a_walk() {
+    let alone = Percept { degree: 1, sighting: Sighting::Nothing };
+    let walk = Walk::new(&[alone, alone], &[Door(0)]).unwrap();
+    let visit = 1;
+    let contradiction = Contradiction::Unmarked;
+    assert_eq!(fold_walk(&walk, Directional).end, WalkEnd::Contradiction { visit, contradiction });
+    assert_eq!(fold_walk(&walk, NoMarker).end, WalkEnd::Complete);
+}
+
+#[test]
+fn worlds_that_differ_have_a_walk_for_each_dart() {
+    let [ring, larger] = [3, 4].map(EmbeddedGraph::cycle);
+    let Claim::NotIsomorphic { walks } = Claim::isomorphism(&ring, &larger) else { panic!() };
+    assert_eq!(walks.len(), larger.dart_count());
+    for WalkPair { from: [one, other], doors } in walks {
+        let walk = |graph, from| Walk::in_world((graph, from), Directional, from, &doors);
+        assert_ne!(walk(&ring, one).percepts().last(), walk(&larger, other).percepts().last());
+    }
+}
+
+fn any_walk() -> impl Strategy<Value = (EmbeddedGraph, Dart, Dart, Vec<Door>)> {
+    let index = any::<prop::sample::Index>;
+    let doors = proptest::collection::vec(any::<u8>(), 0..60);
+    (any_graph(Class::Multigraph, 12), index(), index(), doors).prop_map(
+        |(graph, facing, from, numbers)| {
+            let dart = |index: prop::sample::Index| Dart(index.index(graph.dart_count()) as u32);
+            let (facing, from) = (dart(facing), dart(from));
+            let mut pose = from;
+            let door = |number| {
+                let door = Door(u32::from(number) % graph.degree_around(pose));
+                pose = graph.opposite(graph.behind(pose, door));
+                door
+            };
+            let doors = numbers.into_iter().map(door).collect();
+            (graph, facing, from, doors)
+        },
+    )
+}
+
+proptest! {
+    /// The steps show what folding shows: as many open darts, or the same first contradiction, if one percept is
+    /// wrong.
+    #[test]
+    fn steps_fold_as_folded_trails_do(
+        (graph, facing, from, doors) in any_walk(),
+        is_marked in any::<bool>(),
+        lie in any::<(prop::sample::Index, bool, u8)>(),
+        lies in any::<bool>(),
+    ) {
+        let marker = if is_marked { Directional } else { NoMarker };
+        let mut walk = Walk::in_world((&graph, facing), marker, from, &doors);
+        if lies {
+            let mut percepts = walk.percepts().to_vec();
+            let (visit, changes_degree, number) = lie;
+            let wrong = &mut percepts[visit.index(doors.len() + 1)];
+            if changes_degree {
+                wrong.degree = 1 + u32::from(number) % 5;
+            } else if is_marked {
+                let door = Door(u32::from(number) % (wrong.degree + 1));
+                wrong.sighting = if door.0 == 0 { Sighting::Nothing } else { Sighting::Pointing(door) };
+            }
+            walk = Walk::new(&percepts, walk.doors()).unwrap();
+        }
+        prop_assert_eq!(end_of_steps(&walk, marker), end_of_trail(&walk));
+    }
+
+    /// No marker contradicts itself.
+    #[test]
+    fn a_walk_in_a_world_has_no_contradiction((graph, facing, from, doors) in any_walk()) {
+        for marker in MARKERS {
+            let walk = Walk::in_world((&graph, facing), marker, from, &doors);
+            prop_assert!(end_of_steps(&walk, marker).is_ok(), "{}", marker.name());
+        }
+    }
+
+    /// There are at most as many steps as visits.
+    #[test]
+    fn a_map_of_algorithm_1_is_proved(
+        graph in any_graph(Class::Multigraph, 20),
+        facing in any::<prop::sample::Index>(),
+    ) {
+        let facing = Dart(facing.index(graph.dart_count()) as u32);
+        let mut recorder = WalkRecorder::default();
+        let mut world = GraphWorld::new(&graph, facing);
+        MappingMethod::default()
+            .map_world(&mut world, graph.dart_count(), &[], &mut recorder)
+            .1
+            .unwrap();
+        let walk = recorder.walk().unwrap();
+        let visits = walk.percepts().len();
+        let proof = Proof::of_map(&graph, facing, walk).unwrap();
+        let [Claim::Determined { steps, .. }] = &proof.claims[..] else { panic!() };
+        prop_assert!(steps.len() < visits);
+    }
+}

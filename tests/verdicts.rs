@@ -1,0 +1,371 @@
+//! The proofs that commands write, given to the checker that is extracted from Coq, and to a second reader in Python.
+//!
+//! Needs Coq with MathComp, OCaml and Python. Without them a test prints a message and is skipped, unless
+//! `TOPOSLAM_COQ=required`.
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+    sync::LazyLock,
+};
+
+use proptest::{
+    prelude::Rng as _,
+    test_runner::{RngAlgorithm, TestRng},
+};
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    mapping::{MappingAlgorithm, MappingMethod},
+    proof::{Proof, WalkRecorder},
+    world::GraphWorld,
+};
+
+use crate::{output::folder, program, repository};
+
+/// The checker, built once; or why there is none.
+static CHECKER: LazyLock<Result<PathBuf, String>> = LazyLock::new(|| {
+    let built = Path::new(env!("CARGO_TARGET_TMPDIR")).join("proof-checker");
+    let mut build = Command::new("bash");
+    let build = build.arg(repository("proofs/coq/checker/build")).arg("--out").arg(&built);
+    let Output { status, stderr, .. } = build.output().map_err(|error| error.to_string())?;
+    match status.code() {
+        Some(0) => Ok(built.join("toposlam-proof-check")),
+        Some(2) => Err(String::from_utf8_lossy(&stderr).into_owned()),
+        _ => panic!("{}", String::from_utf8_lossy(&stderr)),
+    }
+});
+
+/// The two readers of proofs, each with its name.
+struct Readers([(&'static str, Box<dyn Fn() -> Command>); 2]);
+
+impl Readers {
+    /// `None`, with a message, if something is missing.
+    fn new() -> Option<Self> {
+        let required = env::var("TOPOSLAM_COQ").is_ok_and(|value| value == "required");
+        let python = || Command::new("python3").arg("--version").output();
+        let missing = match &*CHECKER {
+            Err(missing) => missing.trim_end(),
+            Ok(_) if python().is_err() => "there is no python3",
+            Ok(checker) => {
+                let second = || {
+                    let mut python = Command::new("python3");
+                    python.arg("-B").arg(repository("tests/oracle/verdict_proofs.py"));
+                    python
+                };
+                return Some(Self([
+                    ("the checker", Box::new(move || Command::new(checker))),
+                    ("the second reader", Box::new(second)),
+                ]));
+            }
+        };
+        assert!(!required, "{missing}");
+        eprintln!("skipped, no proof of a verdict is checked: {missing}");
+        None
+    }
+
+    /// Both readers say that each claim in these files is proved.
+    #[track_caller]
+    fn prove(&self, folder: &Path, files: &[String]) {
+        assert!(!files.is_empty());
+        for (name, reader) in &self.0 {
+            let said = reader().current_dir(folder).args(files).output().unwrap();
+            let text = String::from_utf8_lossy(&said.stdout);
+            let wrong = text.lines().find(|line| line.contains("not proved"));
+            assert!(said.status.success(), "{name}: {wrong:?}");
+        }
+    }
+
+    /// Which of these files both accept.
+    #[track_caller]
+    fn accepted(&self, folder: &Path, files: &[String]) -> Vec<String> {
+        let [checker, second] = self.0.each_ref().map(|(_, reader)| {
+            let said = reader().current_dir(folder).arg("--verdicts").args(files).output().unwrap();
+            String::from_utf8(said.stdout).unwrap()
+        });
+        let difference = checker.lines().zip(second.lines()).find(|(one, other)| one != other);
+        assert_eq!(difference, None);
+        assert_eq!((checker.lines().count(), second.lines().count()), (files.len(), files.len()));
+        checker
+            .lines()
+            .filter_map(|line| line.strip_prefix("accepted "))
+            .map(str::to_owned)
+            .collect()
+    }
+}
+
+/// Runs commands that write proofs in a folder, and checks these.
+fn assert_proved(name: &str, commands: &[&str], files: &[&str]) {
+    let Some(readers) = Readers::new() else { return };
+    let folder = folder(name);
+    for line in commands {
+        run(&folder, line);
+    }
+    readers.prove(&folder, &files.iter().map(|&file| file.to_owned()).collect::<Vec<_>>());
+}
+
+/// Runs a command of the program in a folder, whatever its verdict. `worlds/` is that of the repository.
+fn run(folder: &Path, line: &str) {
+    let worlds = repository("worlds").display().to_string();
+    let line = line.replace("worlds/", &format!("{worlds}/"));
+    let said = program().current_dir(folder).args(line.split(' ')).output().unwrap();
+    let code = said.status.code().unwrap();
+    assert!([0, 1, 3].contains(&code), "{line}: {}", String::from_utf8_lossy(&said.stderr));
+}
+
+/// The worlds of the repository.
+fn worlds() -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(repository("worlds"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.ends_with(".toml"))
+        .collect();
+    names.sort();
+    names
+}
+
+/// 8,954 starts (A000698).
+#[test]
+fn the_map_of_every_small_start_is_proved() {
+    assert_proved(
+        "proofs_of_all_starts",
+        &[
+            "check --edges 1..=5 --proof algorithm1.proof",
+            "check --edges 1..=5 --algorithm folding --proof folding.proof",
+            "check --edges 6 --class planar --proof planar.proof",
+        ],
+        &["algorithm1.proof", "folding.proof", "planar.proof"],
+    );
+}
+
+#[test]
+fn the_map_of_each_world_of_the_repository_is_proved() {
+    let Some(readers) = Readers::new() else { return };
+    let folder = folder("proofs_of_maps");
+    let mut files = Vec::new();
+    for world in worlds() {
+        for how in ["--algorithm algorithm1", "--algorithm folding --audit"] {
+            let file = format!("{}.proof", files.len());
+            run(&folder, &format!("explore worlds/{world} {how} --proof {file}"));
+            files.push(file);
+        }
+    }
+    readers.prove(&folder, &files);
+}
+
+/// A start with so many edges and doors from 2 to 5 at a vertex, at random.
+fn random_start(edges: usize, random: &mut TestRng) -> EmbeddedGraph {
+    let mut below = |most: usize| random.next_u64() as usize % most;
+    loop {
+        let mut clockwise: Vec<u32> = Vec::new();
+        while clockwise.len() < 2 * edges {
+            let first = clockwise.len() as u32;
+            let degree = (2 + below(4)).min(2 * edges - clockwise.len()) as u32;
+            clockwise.extend((0..degree).map(|door| first + (door + 1) % degree));
+        }
+        let mut darts: Vec<u32> = (0..2 * edges as u32).collect();
+        for last in (1..darts.len()).rev() {
+            darts.swap(last, below(last + 1));
+        }
+        let mut opposite = vec![0; darts.len()];
+        for edge in darts.chunks_exact(2) {
+            opposite[edge[0] as usize] = edge[1];
+            opposite[edge[1] as usize] = edge[0];
+        }
+        // It may not be connected.
+        if let Ok((graph, _)) = EmbeddedGraph::from_permutations(&opposite, &clockwise) {
+            return graph;
+        }
+    }
+}
+
+/// The proof of the map that an algorithm makes in a start.
+fn proof_of_run(graph: &EmbeddedGraph, algorithm: MappingAlgorithm) -> String {
+    let mut recorder = WalkRecorder::default();
+    let mut world = GraphWorld::new(graph, Dart(0));
+    let method = MappingMethod::from(algorithm);
+    let (journey, _) = method.map_world(&mut world, graph.dart_count(), &[], &mut recorder);
+    let map = journey.map().complete().unwrap();
+    Proof::of_map(map, Dart(0), recorder.walk().unwrap()).unwrap().to_string()
+}
+
+#[test]
+fn maps_of_larger_starts_are_proved() {
+    let Some(readers) = Readers::new() else { return };
+    let folder = folder("proofs_of_larger_maps");
+    let mut random = TestRng::from_seed(RngAlgorithm::ChaCha, &[1; 32]);
+    let mut proofs = String::new();
+    for edges in (10..=200).step_by(5) {
+        let start = random_start(edges, &mut random);
+        for algorithm in MappingAlgorithm::with_fixed_marker() {
+            proofs += &proof_of_run(&start, algorithm);
+        }
+    }
+    fs::write(folder.join("larger.proof"), proofs).unwrap();
+    readers.prove(&folder, &["larger.proof".to_owned()]);
+}
+
+#[test]
+fn pairs_that_a_marker_does_not_distinguish_are_proved_and_other_comparisons() {
+    assert_proved(
+        "proofs_of_comparisons",
+        &[
+            "counterexample --class multigraph --max-edges 5 --all --proof multigraph.proof",
+            "counterexample --class simple --max-edges 7 --all --proof simple.proof",
+            "counterexample --class corridor --max-edges 9 --proof corridor.proof",
+            "counterexample --class planar --max-edges 8 --proof planar.proof",
+            "compare worlds/figure-1a.toml worlds/figure-1b.toml --marker undirected --proof alike.proof",
+            "compare worlds/figure-1a.toml worlds/figure-1b.toml --proof different.proof",
+            "compare worlds/cycle-12.toml worlds/cycle-12.toml --marker two-identical --proof same.proof",
+            "compare worlds/theta-plane.toml worlds/theta-torus.toml --marker none --proof theta.proof",
+        ],
+        &[
+            "multigraph.proof",
+            "simple.proof",
+            "corridor.proof",
+            "planar.proof",
+            "alike.proof",
+            "different.proof",
+            "same.proof",
+            "theta.proof",
+        ],
+    );
+}
+
+/// A run, its events with a wrong percept, and what its scans show.
+#[test]
+fn verdicts_about_logs_are_proved() {
+    let Some(readers) = Readers::new() else { return };
+    let folder = folder("proofs_of_logs");
+    // A ring of 3 junctions, of which one is taken for another: with three doors, or with the marker.
+    let event = |degree, door, marker| format!("{degree},{door},{marker}\n");
+    let ring = [event(2, "1", "0"), event(2, "1", "-1"), event(2, "1", "-1"), event(2, "", "0")];
+    let logs = [
+        ("right", ring.to_vec()),
+        ("open", ring[..3].to_vec()),
+        (
+            "degree",
+            vec![event(2, "1", "0"), event(3, "0", "-1"), event(2, "1", "0"), event(2, "", "-1")],
+        ),
+        ("marker", vec![event(2, "1", "0"), event(2, "0", "-1"), event(2, "", "-1")]),
+    ];
+    for (name, events) in logs {
+        fs::write(
+            folder.join(format!("{name}.csv")),
+            format!("degree,door,marker\n{}", events.concat()),
+        )
+        .unwrap();
+    }
+    let mut files = Vec::new();
+    let mut prove = |line: &str| {
+        let file = format!("{}.proof", files.len());
+        run(&folder, &format!("{line} --proof {file}"));
+        assert!(folder.join(&file).exists(), "{line}");
+        files.push(file);
+    };
+    for log in ["right", "open", "degree", "marker"] {
+        let conform = format!("conform {log}.csv --driver anyone");
+        prove(&conform);
+        for start in ["", " --start any"] {
+            prove(&format!("{conform} --world worlds/cycle-3.toml{start}"));
+        }
+        prove(&format!("{conform} --world worlds/cycle-4.toml"));
+    }
+    prove("simulate worlds/shape-6.toml --by-scene --log run.mcap");
+    prove("conform run.mcap");
+    prove("conform run.mcap --world worlds/shape-6.toml");
+    prove("conform run.mcap --world worlds/shape-8.toml");
+    prove("simulate worlds/shape-8.toml --sensor laser --log scans.mcap");
+    let scans =
+        "conform scans.mcap --events laser --driver anyone --marker none --start any --world";
+    for world in ["shape-8", "shape-6", "building-12"] {
+        prove(&format!("{scans} worlds/{world}.toml"));
+    }
+    readers.prove(&folder, &files);
+    let claims: String =
+        files.iter().map(|file| fs::read_to_string(folder.join(file)).unwrap()).collect();
+    for claim in ["determined", "unexplained", "conforms", "diverges", "misfits"] {
+        assert!(claims.contains(&format!("claim {claim}\n")), "{claim}");
+    }
+}
+
+/// Examples of every kind, and what is wrong in one thing.
+#[test]
+fn both_readers_agree_on_the_examples() {
+    let Some(readers) = Readers::new() else { return };
+    let examples = repository("proofs/coq/checker/examples");
+    let files = |folder: &str| {
+        let mut files: Vec<String> = fs::read_dir(examples.join(folder))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name.ends_with(".proof"))
+            .map(|name| Path::new(folder).join(name).to_str().unwrap().to_owned())
+            .collect();
+        files.sort();
+        files
+    };
+    readers.prove(&examples, &files(""));
+    assert_eq!(readers.accepted(&examples, &files("refused")), Vec::<String>::new());
+}
+
+/// Changes one thing in the lines of a proof.
+fn mutated(proof: &[&str], other: &[&str], random: &mut TestRng) -> String {
+    let mut below = |most: usize| random.next_u64() as usize % most;
+    let mut lines: Vec<String> = proof.iter().map(|&line| line.to_owned()).collect();
+    let at = below(lines.len());
+    match below(6) {
+        0 => drop(lines.remove(at)),
+        1 => lines.insert(at, lines[at].clone()),
+        2 => {
+            let with = below(lines.len());
+            lines.swap(at, with);
+        }
+        3 => lines[at] = other[below(other.len())].to_owned(),
+        // One word of the line, for another of the proof or for another number.
+        kind => {
+            let all: Vec<String> =
+                lines.iter().flat_map(|line| line.split(' ')).map(str::to_owned).collect();
+            let mut words: Vec<String> = lines[at].split(' ').map(str::to_owned).collect();
+            let word = below(words.len());
+            words[word] =
+                if kind == 4 { all[below(all.len())].clone() } else { below(6).to_string() };
+            lines[at] = words.join(" ");
+        }
+    }
+    lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// 10,000 proofs that were changed in one thing, of which some are still proofs.
+#[test]
+fn both_readers_agree_on_changed_proofs() {
+    let Some(readers) = Readers::new() else { return };
+    let folder = folder("changed_proofs");
+    for line in [
+        "check --edges 1..=3 --proof maps.proof",
+        "counterexample --class multigraph --max-edges 3 --all --proof pairs.proof",
+        "compare worlds/figure-1a.toml worlds/figure-1b.toml --proof different.proof",
+    ] {
+        run(&folder, line);
+    }
+    let examples = repository("proofs/coq/checker/examples");
+    let examples = fs::read_dir(examples).unwrap().map(|entry| entry.unwrap().path());
+    let ours = ["maps.proof", "pairs.proof", "different.proof"].map(|file| folder.join(file));
+    let mut sources: Vec<_> = examples.filter(|path| path.is_file()).chain(ours).collect();
+    sources.sort();
+    let text: String = sources.iter().map(|path| fs::read_to_string(path).unwrap()).collect();
+    let head = "toposlam-proof 1\n";
+    let proofs: Vec<Vec<&str>> = text
+        .split(head)
+        .skip(1)
+        .map(|rest| rest.lines().filter(|line| !line.starts_with('#')).collect())
+        .collect();
+    let mut random = TestRng::from_seed(RngAlgorithm::ChaCha, &[2; 32]);
+    let files: Vec<String> = (0..10_000).map(|number| number.to_string()).collect();
+    for file in &files {
+        let mut any = || &proofs[random.next_u64() as usize % proofs.len()];
+        let (one, other) = (any(), any());
+        fs::write(folder.join(file), head.to_owned() + &mutated(one, other, &mut random)).unwrap();
+    }
+    let accepted = readers.accepted(&folder, &files).len();
+    assert!((100..5_000).contains(&accepted), "{accepted}");
+}
