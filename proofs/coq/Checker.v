@@ -46,12 +46,13 @@ Inductive reason :=
   (* A walk. *)
   | DegreeIs of N | SightingDiffers | DoorMissing of N | LengthsDiffer | GivesAll of N
   (* Steps. *)
-  | NoVisit of N | NoMove of N | NotPointing of N | NotOne | TwoDoors | OtherDegree
+  | NoVisit of N | NoMove of N | NoDoor of N & N | NotPointing of N | NotOne | TwoDoors | OtherDegree
   | Open of N & N
   (* Contradictions. *)
   | NoContradiction | NotOneVertex
   (* Pairs, images and poses. *)
-  | PerceptsDiffer of N & N | NoPair of N & N | PerceptsSame | NoImage of N | NotKept of N | ImageShared of N
+  | PerceptsDiffer of N & N | NoPair of N & N | PerceptsSame | NoImage of N | NotKept of N
+  | ImageShared of N | ImageTwice | WalksTooMany
   | PosesLeftOut of N | OtherPose of N.
 
 Inductive outcome := Accepted | Refused of place & reason.
@@ -293,6 +294,9 @@ Definition class (k : knowledge) (visit : N) : N * seq N := odflt (1%num, [:: vi
 Definition name_of (k : knowledge) (x : walk_dart) : walk_dart :=
   let: (visit, turned) := label k x.1 in (visit, N.modulo (N.add turned x.2) (degree_at visit)).
 
+(** Whether the door of a dart of the walk is below the degree that was perceived. *)
+Definition door_exists (x : walk_dart) : bool := N.ltb x.2 (degree_at x.1).
+
 (** The darts from which a passage leaves, and to which it leads. *)
 Definition ends_of (p : passage) : option (walk_dart * walk_dart) :=
   match p with
@@ -302,20 +306,28 @@ Definition ends_of (p : passage) : option (walk_dart * walk_dart) :=
 
 Definition move_of (p : passage) : N := match p with Along m => m | Against m => m end.
 
+(** Two darts, if their doors exist. *)
+Definition existing (x y : walk_dart) : walk_dart * walk_dart + reason :=
+  if ~~ door_exists x then inr (NoDoor x.1 x.2)
+  else if ~~ door_exists y then inr (NoDoor y.1 y.2)
+  else inl (x, y).
+
 (** The darts that a step shows to be one, or why it does not. *)
 Definition shows (k : knowledge) (s : step) : walk_dart * walk_dart + reason :=
   match s with
   | Mark a b =>
       if marker is WordDirectional then
         match sighting_at a, sighting_at b with
-        | WordPointing i, WordPointing j => inl ((a, i), (b, j))
+        | WordPointing i, WordPointing j => existing (a, i) (b, j)
         | WordPointing _, _ => inr (NotPointing b)
         | _, _ => inr (NotPointing a)
         end
       else inr OnlyDirectional
   | Beyond p q =>
       match ends_of p, ends_of q with
-      | Some (x, x'), Some (y, y') => if name_of k x == name_of k y then inl (x', y') else inr NotOne
+      | Some (x, x'), Some (y, y') =>
+          if existing x y is inr reason then inr reason
+          else if name_of k x == name_of k y then existing x' y' else inr NotOne
       | None, _ => inr (NoMove (move_of p))
       | _, None => inr (NoMove (move_of q))
       end
@@ -360,10 +372,12 @@ Fixpoint after_all (k : knowledge) (part : N) (steps : seq step) : knowledge + N
     end
   else inl k.
 
-(** The names of the ends of all moves. *)
+(** The names of the ends of all moves, if their doors exist. *)
 Fixpoint names_of_ends (k : knowledge) (ends : table (table unit)) (visit : N) (doors : seq N) : table (table unit) :=
   let add ends x :=
-    let: (visit, i) := name_of k x in put ends visit (put (odflt empty (find ends visit)) i tt) in
+    if door_exists x then
+      let: (visit, i) := name_of k x in put ends visit (put (odflt empty (find ends visit)) i tt)
+    else ends in
   if doors is i :: doors then names_of_ends k (add (add ends (visit, i)) (N.succ visit, N0)) (N.succ visit) doors
   else ends.
 
@@ -424,7 +438,10 @@ Definition points_elsewhere (k : knowledge) (a b : N) : bool :=
   | _, _ => false
   end.
 
-Definition is_pointing (seen : N * sighting_word) : bool := if seen.2 is WordPointing _ then true else false.
+Definition pointed_door_exists (a : N) : bool :=
+  if sighting_at a is WordPointing i then door_exists (a, i) else true.
+
+Definition is_seen (seen : N * sighting_word) : bool := if seen.2 is WordNothing then false else true.
 
 (** Why a contradiction is none. *)
 Definition not_contradictory (k : knowledge) (c : contradiction) : option reason :=
@@ -441,13 +458,17 @@ Definition not_contradictory (k : knowledge) (c : contradiction) : option reason
       else if (label k a).1 != (label k b).1 then Some NotOneVertex
       else
         match marker with
-        | WordDirectional => by_test (points_elsewhere k a b || points_elsewhere k b a)
+        | WordNone => Some NoContradiction
+        | WordDirectional =>
+            by_test [&& pointed_door_exists a, pointed_door_exists b & points_elsewhere k a b || points_elsewhere k b a]
         | WordUndirectedEdge | WordDirectedEdge =>
             by_test ((name_of k (a, N0) == name_of k (b, N0)) && ~~ same_sighting (sighting_at a) (sighting_at b))
         | _ => by_test (~~ same_sighting (sighting_at a) (sighting_at b))
         end
   | ByEdge m =>
-      if ends_of (Along m) is Some (x, y) then by_test (name_of k x == name_of k y) else Some (NoMove m)
+      if ends_of (Along m) is Some (x, y) then
+        by_test [&& door_exists x, door_exists y & name_of k x == name_of k y]
+      else Some (NoMove m)
   | ByPercept a =>
       if ~~ visited a then Some (NoVisit a)
       else by_test ((degree_at a == N0) || ~~ can_see (degree_at a) (sighting_at a))
@@ -455,7 +476,7 @@ Definition not_contradictory (k : knowledge) (c : contradiction) : option reason
       if find (door_at w) m is Some i then by_test (N.leb (degree_at m) i) else Some (NoMove m)
   | ByNoMarker =>
       if marker is WordDirectional then
-        if has is_pointing (see_lines (walk_of w)) then Some NoContradiction
+        if has is_seen (see_lines (walk_of w)) then Some NoContradiction
         else if complete k then None else Some (open_door k)
       else Some OnlyDirectional
   end.
@@ -599,6 +620,7 @@ Definition check_isomorphic (T U : tables) (pairs : seq (N * N)) : outcome :=
   let images := image_table pairs in
   let origins := foldl (fun t pair => put t pair.2 pair.1) empty pairs in
   if wrong_image T U images N0 pairs is Some (part, reason) then Refused (AtPart part) reason
+  else if length pairs != length (dart_list T) then Refused InClaim ImageTwice
   else if first_not (has_entry images) (dart_list T) is Some d then Refused InClaim (NoImage d)
   else if first_not (fun p => if find images p is Some q then find origins q == Some p else false) (dart_list T)
     is Some d then Refused InClaim (ImageShared d)
@@ -611,7 +633,9 @@ Definition check_not_isomorphic (T U : tables) (walks : seq (N * N * seq N)) : o
     else if not_all_refuted T U p N0 walks is Some (part, reason) then Refused (AtPart part) reason
     else
       let compared := set_of (foldl (fun s walk => walk.1.2 :: s) [::] walks) in
-      if first_not (has_entry compared) (dart_list U) is Some d then Refused InClaim (PosesLeftOut d) else Accepted
+      if first_not (has_entry compared) (dart_list U) is Some d then Refused InClaim (PosesLeftOut d)
+      else if length walks != length (dart_list U) then Refused InClaim WalksTooMany
+      else Accepted
   else Refused InClaim NothingClaimed.
 
 (** The checker. *)
@@ -624,13 +648,13 @@ Definition check (p : prepared) (c : claim) : outcome :=
     | Unexplained steps c, [::], Some w => check_unexplained marker w steps c
     | Conforms from, [:: (_, T)], Some w => check_conforms marker T w from
     | Diverges from, [:: (_, T)], Some w => check_diverges marker T w from
-    | Indistinguishable pairs, [:: (_, T); (_, U)], _ =>
+    | Indistinguishable pairs, [:: (_, T); (_, U)], None =>
         if pairs is [::] then Refused InClaim NothingClaimed
         else refused_at (wrong_pair T U marker marker (pair_table pairs) N0 pairs)
-    | Distinguishable walks, [:: (_, T); (_, U)], _ =>
+    | Distinguishable walks, [:: (_, T); (_, U)], None =>
         if walks is [::] then Refused InClaim NothingClaimed
         else refused_at (not_all_distinguished T U marker marker N0 walks)
-    | Isomorphic pairs, [:: (_, T); (_, U)], _ => check_isomorphic T U pairs
-    | NotIsomorphic walks, [:: (_, T); (_, U)], _ => check_not_isomorphic T U walks
+    | Isomorphic pairs, [:: (_, T); (_, U)], None => check_isomorphic T U pairs
+    | NotIsomorphic walks, [:: (_, T); (_, U)], None => check_not_isomorphic T U walks
     | _, _, _ => Refused InClaim WrongParts
     end.

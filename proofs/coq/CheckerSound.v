@@ -222,13 +222,14 @@ Lemma wrong_imageP images part pairs : wrong_image T U images part pairs = None 
 Proof.
 elim: pairs part => //= -[x y] pairs IH part; case: ifP => // /negbFE/(dart_setP T_fits)[p <-].
 case: ifP => // /negbFE/(dart_setP U_fits)[q <-]; rewrite !opposite_inE // (find_next T_fits) (find_next U_fits) /=.
-case: ifP => // /and3P[/eqP here /eqP opp /eqP cw] /IH later x' y'; rewrite inE => /predU1P[[-> ->]|]; last exact: later.
+case: ifP => // /and3P[/eqP here /eqP opp /eqP cw] /IH later x' y'.
+rewrite inE => /predU1P[[-> ->]|]; last exact: later.
 by exists p, q.
 Qed.
 
 Lemma images_isomorphic pairs : check_isomorphic T U pairs = Accepted -> isomorphic V W.
 Proof.
-rewrite /check_isomorphic; case wrongE: (wrong_image _ _ _ _ _) => [[part reason]|] //.
+rewrite /check_isomorphic; case wrongE: (wrong_image _ _ _ _ _) => [[part reason]|] //; case: ifP => // _.
 set images := image_table pairs in wrongE *; set origins := foldl _ _ _.
 case: (first_not (has_entry images) _) (@first_notP (has_entry images) (dart_list T)) => // /(_ erefl) imaged.
 set back := fun p => _; case: (first_not back _) (@first_notP back (dart_list T)) => // /(_ erefl) backs.
@@ -343,21 +344,21 @@ case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks] /=.
     by rewrite /poses; case: from p_in {poses both remainE} => //= _; apply/(dart_listP T_fits); exists p.
   exact: (mem_fold_filter (test := xpredT) (fun d => (d, d)) [::] p_poses).
 - case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-  case: pairs => // pair pairs; set all_pairs := pair :: pairs; rewrite /refused_at.
+  case: walk => [?|] //=; case: pairs => // pair pairs; set all_pairs := pair :: pairs; rewrite /refused_at.
   case wrongE: (wrong_pair _ _ _ _ _ _ _) => [[? ?]|] // _.
   apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits [x y] in_pairs.
   have [p [q [pE qE same]]] := pairs_alike T_fits U_fits wrongE in_pairs.
   by exists p => //; exists q.
 - case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-  case: walks => // first walks; set all_walks := first :: walks; rewrite /refused_at.
+  case: walk => [?|] //=; case: walks => // first walks; set all_walks := first :: walks; rewrite /refused_at.
   case wrongE: (not_all_distinguished _ _ _ _ _ _) => [[? ?]|] // _.
   apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits pair doors in_walks.
   have [p [q [pE qE apart]]] := not_all_distinguishedP T_fits U_fits wrongE in_walks.
   by exists p => //; exists q.
-- case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right accepted.
-  apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
+- case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
+  case: walk => [?|] //= accepted; apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
   exact: (images_isomorphic T_fits U_fits accepted).
-case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right accepted.
-apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
+case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
+case: walk => [?|] //= accepted; apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
 exact: (walks_not_isomorphic T_fits U_fits accepted).
 Qed.

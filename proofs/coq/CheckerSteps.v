@@ -163,17 +163,21 @@ Qed.
 
 End Known.
 
+Lemma existingP x y x' y' : existing w x y = inl (x', y') -> x = x' /\ y = y'.
+Proof. by rewrite /existing; case: ifP => // _; case: ifP => // _ [-> ->]. Qed.
+
 Lemma showsP k s x y : knows k -> shows marker w k s = inl (x, y) ->
   [/\ is_visit x.1, is_visit y.1 & walked_dart x = walked_dart y].
 Proof.
 move=> known; case: s => [a b|p p'] /=.
   case markerE: marker => //; case aE: (sighting_at w a) => [||i|||||||] //.
-  case bE: (sighting_at w b) => [||j|||||||] // [<- <-].
+  case bE: (sighting_at w b) => [||j|||||||] // /existingP[<- <-].
   have a_in : is_visit a by apply: sighting_at_visit; rewrite aE.
   have b_in : is_visit b by apply: sighting_at_visit; rewrite bE.
   split=> //; have := sighting_atE a_in; have := sighting_atE b_in; rewrite aE bE markerE /= /directional /walked_dart.
   by case: ifP => // near [jE]; case: ifP => // near' [iE] /=; rewrite /turn iE jE !iter_findex.
-case pE: (ends_of w p) => [[z x']|] //; case p'E: (ends_of w p') => [[z' y']|] //; case: eqP => // one [<- <-].
+case pE: (ends_of w p) => [[z x']|] //; case p'E: (ends_of w p') => [[z' y']|] //; case: (existing _ _ _) => // _.
+case: eqP => // one /existingP[<- <-].
 have [z_in x_in <-] := ends_ofP pE; have [z'_in y_in <-] := ends_ofP p'E.
 by split=> //; rewrite (eq_name_of known z_in z'_in one).
 Qed.
@@ -209,10 +213,13 @@ Proof.
 have adds ends' x : is_end k (name_of w k x) ->
     (forall r a, has_entry (odflt empty (find ends' r)) a -> is_end k (r, a)) ->
     forall r a,
-      has_entry (odflt empty (find (let: (visit, i) := name_of w k x in
-                                    put ends' visit (put (odflt empty (find ends' visit)) i tt)) r)) a ->
+      has_entry (odflt empty (find (if door_exists w x then
+                                      let: (visit, i) := name_of w k x in
+                                      put ends' visit (put (odflt empty (find ends' visit)) i tt)
+                                    else ends') r)) a ->
       is_end k (r, a).
-  move=> x_end ends'_ends r a; move: x_end; case: (name_of w k x) => s b x_end.
+  move=> x_end ends'_ends r a; case: ifP => _; last exact: ends'_ends.
+  move: x_end; case: (name_of w k x) => s b x_end.
   rewrite find_put; case: eqP => [->|_] /=; last exact: ends'_ends.
   rewrite /has_entry find_put; case: eqP => [-> //|_]; exact: ends'_ends.
 elim: ds u ends => [|i ds IH] u ends //= door_atE ends_ends; apply: IH => [m lt|].
@@ -296,8 +303,8 @@ rewrite !name_ofE /two_doors /= one eqxx /= => /norP[/negbNE/eqP-> _].
 exact: eqxx.
 Qed.
 
-Lemma is_pointing_seen v i : marker_of marker (visit_pose v) = Pointing i -> is_visit v ->
-  has is_pointing (see_lines text).
+Lemma is_seen_pointing v i : marker_of marker (visit_pose v) = Pointing i -> is_visit v ->
+  has is_seen (see_lines text).
 Proof.
 move=> pointing v_in; have := sighting_atE v_in; rewrite pointing => /sighting_of_pointing[n].
 rewrite /sighting_at wE (find_table_of _ _ (N0, WordNothing)) size_seen ltnS -/(is_visit v) v_in.
@@ -318,14 +325,14 @@ move=> known doors_exist; case: c => [s|a b|m|a|m|] /=.
   have near_eq (d : V) : same_vertex (visit_pose a) d = same_vertex (visit_pose b) d.
     apply/idP/idP => [a_d|b_d]; last exact: same_vertex_trans near b_d.
     by apply: same_vertex_trans a_d; rewrite same_vertex_sym.
-  case markerE: marker; rewrite ?(points_elsewhereF markerE) //; try
+  case markerE: marker; rewrite ?(points_elsewhereF markerE) ?andbF //; try
     (rewrite same_at // markerE /= /no_marker /undirected /two_identical /two_distinct /two_looks ?near_eq //).
   + case: eqP => //= names; rewrite same_at //.
     by have := eq_name_of known (x := (a, N0)) (y := (b, N0)) a_in b_in names; rewrite /walked_dart /= => ->.
   case: eqP => //= names; rewrite same_at //.
   by have := eq_name_of known (x := (a, N0)) (y := (b, N0)) a_in b_in names; rewrite /walked_dart /= => ->.
 - case doorE: (find _ m) => [i|] //; have [lt _ poseE] := ends_of_along doorE.
-  case: eqP => // names; have := eq_name_of known (x := (m, i)) (y := (N.succ m, N0)) (ltnW lt) _ names.
+  case: and3P => // -[_ _ /eqP names]; have := eq_name_of known (x := (m, i)) (y := (N.succ m, N0)) (ltnW lt) _ names.
   rewrite /is_visit /= to_natS => /(_ lt); rewrite {2}/walked_dart /= poseE => /esym/eqP.
   by rewrite (negbTE (opposite_neq _)).
 - case: ifP => // /negbFE/visited_visit a_in; rewrite can_seeP // orbF; case: eqP => // degree0.
@@ -338,7 +345,7 @@ case markerE: marker => //; case pointing: (has _ _) => //; case completeE: (com
 have [v v_in near] := covers_all known (complete_covers known completeE) (facing V).
 have : marker_of marker (visit_pose v) = Pointing (findex clockwise (visit_pose v) (facing V)).
   by rewrite markerE /= /directional near.
-by move/is_pointing_seen/(_ v_in); move: pointing; rewrite wE => /= ->.
+by move/is_seen_pointing/(_ v_in); move: pointing; rewrite wE => /= ->.
 Qed.
 
 End Steps.

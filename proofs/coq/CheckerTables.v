@@ -29,7 +29,8 @@ Proof. exact: Nnat.N2Nat.inj_succ. Qed.
 
 Lemma ltbP m n : N.ltb m n = (N.to_nat m < N.to_nat n).
 Proof.
-apply/idP/idP => [/N.ltb_lt|/ltP] lt; last by apply/N.ltb_lt; rewrite /N.lt Nnat.N2Nat.inj_compare; apply/PeanoNat.Nat.compare_lt_iff.
+apply/idP/idP => [/N.ltb_lt|/ltP] lt; last first.
+  by apply/N.ltb_lt; rewrite /N.lt Nnat.N2Nat.inj_compare; apply/PeanoNat.Nat.compare_lt_iff.
 by apply/ltP/PeanoNat.Nat.compare_lt_iff; rewrite -Nnat.N2Nat.inj_compare.
 Qed.
 

@@ -1,10 +1,11 @@
 (* Checks proofs of verdicts with the program that is extracted from Checker.v. This file reads the format of
    docs/proofs-of-verdicts.md, and refuses everything else.
 
-     toposlam-proof-check FILE...      (- is the standard input)
+     toposlam-proof-check FILE...               each claim that is proved, and FILE:LINE: and why a file is refused
+     toposlam-proof-check --verdicts FILE...    of each file whether it is accepted or refused
 
-   Prints a line for each claim that is proved, or FILE:LINE: and why it is not. Exit codes: 0 every claim is proved,
-   1 one is not, or a file is malformed, 2 bad usage, or a file cannot be read. *)
+   - is the standard input. Exit codes: 0 every claim is proved, 1 one is not, or a file is malformed, 2 bad usage, or a
+   file cannot be read. *)
 
 open Checker
 
@@ -32,6 +33,7 @@ let rec advance r =
   | text ->
       r.line <- r.line + 1;
       if pos_in r.channel - before = String.length text then malformed r "the last line does not end";
+      if not (String.for_all (fun c -> ' ' <= c && c <= '~') text) then malformed r "a line is printable ASCII";
       if text <> "" && text.[0] = '#' then advance r else r.words <- Some (String.split_on_char ' ' text)
 
 (* The number of a line that was read, when the reader goes on to the next. *)
@@ -173,7 +175,7 @@ let why = function
   | EdgesDiffer d -> say "dart %d does not stand in one edge" (int d)
   | NotConnected d -> say "dart %d is not reached from the facing dart" (int d)
   | TablesWrong -> "this is no world"
-  | WrongParts -> "the claim needs another number of worlds, or a walk"
+  | WrongParts -> "the claim needs other parts before it: one world, two or none, and a walk or none"
   | OnlyDirectional -> "this needs a directional marker"
   | NothingClaimed -> "nothing is claimed"
   | DegreeIs degree -> say "here the degree is %d" (int degree)
@@ -183,6 +185,7 @@ let why = function
   | GivesAll d -> say "from dart %d the walk gives these percepts" (int d)
   | NoVisit k -> say "there is no visit %d" (int k)
   | NoMove m -> say "there is no move %d" (int m)
+  | NoDoor (k, i) -> say "there is no door %d at visit %d" (int i) (int k)
   | NotPointing k -> say "at visit %d no directional marker was seen" (int k)
   | NotOne -> "the darts from which these passages leave are not known to be one"
   | TwoDoors -> "these darts are two doors of one vertex: this would be a contradiction"
@@ -196,6 +199,8 @@ let why = function
   | NoImage d -> say "dart %d has no image" (int d)
   | NotKept d -> say "the edges, or the order clockwise, are not kept at dart %d" (int d)
   | ImageShared d -> say "another dart has the image of dart %d" (int d)
+  | ImageTwice -> "a dart has an image twice"
+  | WalksTooMany -> "a dart of the second world has two walks"
   | PosesLeftOut d -> say "dart %d of the second world is left out" (int d)
   | OtherPose d -> say "the pose %d in the first world is not that of the first walk" (int d)
 
@@ -216,7 +221,7 @@ let proved s c =
 let not_proved line what = raise (Wrong (line, "not proved: " ^ what))
 
 (* A proof: reads it, and checks each claim when it is read. Returns the number of claims. *)
-let proof r =
+let proof print r =
   expect r "toposlam-proof 1";
   let rec worlds found =
     if r.words = Some [ "world" ] then
@@ -237,7 +242,7 @@ let proof r =
         let c, parts = claim r kind in
         expect r "end";
         (match check prepared c with
-        | Accepted -> print_endline ("proved: " ^ proved s c)
+        | Accepted -> print ("proved: " ^ proved s c)
         | Refused (place, reason) ->
             let line =
               match (place, walked) with
@@ -253,26 +258,43 @@ let proof r =
   in
   claims 0
 
-let file name =
+(* The number of claims of a file, or what is wrong first. *)
+let file print name =
   let channel = if name = "-" then stdin else open_in_bin name in
-  if name = "-" then set_binary_mode_in stdin true;
   let r = { channel; line = 0; words = None } in
-  try
-    advance r;
-    let rec proofs count = if r.words = None then count else proofs (count + proof r) in
-    let count = proofs 0 in
-    if count = 0 then not_proved 1 "there is no claim";
-    if name <> "-" then close_in channel;
-    count
-  with Wrong (line, what) -> Printf.printf "%s:%d: %s\n" name line what; exit 1
+  let rec proofs count = if r.words = None then count else proofs (count + proof print r) in
+  let read () =
+    match advance r; proofs 0 with
+    | 0 -> Error (1, "not proved: there is no claim")
+    | count -> Ok count
+    | exception Wrong (line, what) -> Error (line, what)
+  in
+  Fun.protect read ~finally:(fun () -> if name <> "-" then close_in_noerr channel)
+
+let check_all files =
+  let claims (count, all) name =
+    match file print_endline name with
+    | Ok claims -> (count + claims, all)
+    | Error (line, what) -> Printf.printf "%s:%d: %s\n" name line what; (count, false)
+  in
+  let count, all = List.fold_left claims (0, true) files in
+  if all then Printf.printf "proved: %d claims\n" count;
+  all
+
+let verdicts files =
+  let accepted name =
+    let accepted = Result.is_ok (file ignore name) in
+    print_endline ((if accepted then "accepted " else "refused ") ^ name);
+    accepted
+  in
+  List.fold_left (fun all name -> accepted name && all) true files
 
 let () =
-  let usage = "usage: toposlam-proof-check FILE...   (- is the standard input)" in
-  match List.tl (Array.to_list Sys.argv) with
-  | [] -> prerr_endline usage; exit 2
-  | [ ("-h" | "--help") ] -> print_endline usage
-  | names -> (
-      try
-        let count = List.fold_left (fun count name -> count + file name) 0 names in
-        Printf.printf "proved: %d claims\n" count
-      with Sys_error what -> prerr_endline ("error: " ^ what); exit 2)
+  let usage = "usage: toposlam-proof-check [--verdicts] FILE...   (- is the standard input)" in
+  try
+    match List.tl (Array.to_list Sys.argv) with
+    | [ ("-h" | "--help") ] -> print_endline usage
+    | [] | [ "--verdicts" ] -> prerr_endline usage; exit 2
+    | "--verdicts" :: files -> if not (verdicts files) then exit 1
+    | files -> if not (check_all files) then exit 1
+  with Sys_error what -> prerr_endline ("error: " ^ what); exit 2
