@@ -393,7 +393,8 @@ class Proof:
         (first, second), image = self.worlds, {}
         while self.lines.next_is("image"):
             dart, other = self.pair("image P Q")
-            self.lines.need(image.setdefault(dart, other) == other, "two images of one dart")
+            self.lines.need(dart not in image, "a second image of one dart")
+            image[dart] = other
         bijection = len(image) == len(first.darts) and sorted(image.values()) == list(second.darts)
         self.lines.need(bijection, "no bijection")
         for dart, other in image.items():
@@ -403,15 +404,15 @@ class Proof:
 
     def not_isomorphic(self):
         covered = set()
-        while self.lines.next_is("from"):
+        while len(covered) < len(self.worlds[1].darts):
             start, pair = self.walked()
+            self.lines.need(start not in covered, "a second walk from these poses")
             covered.add(start)
             markers = zip(self.worlds, pair, start)
             one, other = (world.percept("directional", pose, facing) for world, pose, facing in markers)
             self.lines.need(one != other, "the percepts do not differ")
         always = len({dart for dart, _ in covered}) == 1
         self.lines.need(always, "not always the same dart of the first world")
-        self.lines.need(len(covered) == len(self.worlds[1].darts), "a dart of the second world is left out")
 
     def onward(self, visit, alternative, pose):
         """The poses with which a robot that has this alternative can come to the next vertex.
