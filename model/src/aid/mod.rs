@@ -300,7 +300,8 @@ macro_rules! with_any_aid {
 }
 
 /// The fixed markers, then the aids that move, and then other senses. Each has finitely many states in a graph, so all of them can be
-/// searched; [a string as long as it takes](LaidString::of_any_length) has not, and is not among them.
+/// searched; [a string as long as it takes](LaidString::of_any_length) has not, and is not among them. Nor is
+/// [`DirectionalAndMovable`], which distinguishes what a directional marker distinguishes.
 pub const AIDS: [AidKind; 25] = [
     AidKind::Fixed(MarkerKind::NoMarker),
     AidKind::Fixed(MarkerKind::Undirected),
