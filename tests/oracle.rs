@@ -246,7 +246,7 @@ fn with_aids_that_move_the_same_worlds_are_counted_and_indistinguishable() {
 
 #[test]
 fn with_binoculars_the_same_worlds_are_counted_and_indistinguishable() {
-    let aids = ["binoculars-1", "binoculars-2"];
+    let aids = ["binoculars-1", "binoculars-2", "binoculars-3"];
     for (class, edges) in [("multigraph", "4"), ("simple", "7"), ("corridor", "8"), ("planar", "7")]
     {
         let command = format!("ambiguity.py {class} {edges} {}", aids.join(" "));

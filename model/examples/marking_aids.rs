@@ -4,16 +4,20 @@
 //!
 //! The moves are means, with the most in parentheses. Each map is judged by a bijection. A team's moves are those of all
 //! robots; its rounds, in each of which every robot makes at most one, are in a line of their own. For the string, the
-//! edges that it was long at most are.
+//! edges that it was long at most are. For one marker that is carried, there are the moves of two robots without radio, of
+//! which the second one is the marker.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "an example may panic, and prints")]
 
 #[path = "random_buildings/buildings.rs"]
 mod buildings;
+#[path = "random_buildings/together.rs"]
+mod together;
 
 use buildings::{BUILDINGS, MORE_HALLWAYS, buildings, moves};
+use together::moves_together;
 use toposlam_model::{
-    aid::AidKind,
+    aid::{AidKind, markers::MOVABLE, pointer::MovablePointer},
     embedded_graph::{Dart, EmbeddedGraph},
     folding::certificate_length,
     mapping::{Explorer, MappingAlgorithm, TeamRun, ThreadRun, explore},
@@ -47,6 +51,9 @@ fn main() {
             format!("{aid}, {}", algorithm.name())
         };
         line(&name, &|graph| moves(algorithm, graph).0);
+        if [AidKind::from(MOVABLE), AidKind::Pointer(MovablePointer)].contains(&algorithm.aid()) {
+            line("  two robots without radio", &|graph| moves_together(algorithm, graph));
+        }
         if let AidKind::Team(team) = algorithm.aid() {
             line("  rounds", &|graph| explored(TeamRun::with(team), graph).rounds());
         }

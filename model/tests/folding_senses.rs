@@ -139,8 +139,7 @@ fn lengths_save_moves_where_the_folding_explorer_maps_and_none_with_other_explor
             graphs.iter().map(|graph| moves(algorithm, graph, is_measured)).sum()
         });
         let aid = algorithm.aid().name();
-        let is_folding = ["movable+directional", "string-1", "string-2", "string-3"].contains(&aid);
-        if is_folding || algorithm.name() == "folding" {
+        if algorithm.uses_senses() {
             assert!(with < without, "{aid}: {with} {without}");
         } else {
             assert_eq!(with, without, "{aid}");

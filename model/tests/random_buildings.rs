@@ -4,6 +4,8 @@
 mod buildings;
 #[path = "../examples/random_buildings/sensed.rs"]
 mod sensed;
+#[path = "../examples/random_buildings/together.rs"]
+mod together;
 #[path = "../examples/random_buildings/totals.rs"]
 mod totals;
 
@@ -11,6 +13,7 @@ use toposlam_model::mapping::MappingAlgorithm;
 
 use buildings::{MORE_HALLWAYS, buildings, moves};
 use sensed::{LengthError, Lengths, Senses, measured_buildings, moves_with};
+use together::moves_together;
 use totals::Totals;
 
 #[test]
@@ -44,6 +47,21 @@ fn the_published_moves_with_other_aids_are_those_of_right_maps() {
         let algorithm = MappingAlgorithm::all().find(|known| known.aid().name() == aid).unwrap();
         let total = |junctions| -> u64 {
             buildings(junctions, MORE_HALLWAYS).iter().map(|graph| moves(algorithm, graph).0).sum()
+        };
+        assert_eq!([25, 50].map(total), expected, "{aid}");
+    }
+}
+
+/// The moves of two robots that go together and have no radio, of the smaller buildings.
+#[test]
+fn the_published_moves_of_two_robots_without_radio_are_those_with_a_marker_and_of_the_second_robot()
+{
+    for (aid, expected) in [("movable", [3_788, 13_584]), ("movable-directional", [3_834, 13_656])]
+    {
+        let algorithm = MappingAlgorithm::all().find(|known| known.aid().name() == aid).unwrap();
+        let total = |junctions| -> u64 {
+            let buildings = buildings(junctions, MORE_HALLWAYS);
+            buildings.iter().map(|graph| moves_together(algorithm, graph)).sum()
         };
         assert_eq!([25, 50].map(total), expected, "{aid}");
     }

@@ -17,9 +17,9 @@ use toposlam_model::{
 
 use crate::starts;
 
-/// The binoculars that reach one edge far, and two.
-fn binoculars() -> [(AidKind, usize); 2] {
-    [("binoculars-1", 1), ("binoculars-2", 2)].map(|(name, radius)| (named(name).unwrap(), radius))
+/// The binoculars that reach one edge far, two, and three.
+fn binoculars() -> [(AidKind, usize); 3] {
+    [1, 2, 3].map(|radius| (named(&format!("binoculars-{radius}")).unwrap(), radius))
 }
 
 fn search(class: Class, edges: usize, aid: AidKind) -> Findings {
@@ -61,16 +61,17 @@ fn a_robot_with_binoculars_sees_the_ball_around_it() {
         let comparison = Comparison::new(aid, (graph, Dart(0)), (graph, Dart(0)));
         comparison.starts([Dart(0); 2])[0].sensed().to_string()
     };
-    let [near, far] = binoculars();
+    let [near, far, farther] = binoculars();
     let ring = EmbeddedGraph::cycle(5);
     assert_eq!(seen(&ring, near), "2 doors, sees 3 junctions: 1 2, 0 -, 0 -");
-    assert_eq!(seen(&ring, far), "2 doors, sees 5 junctions: 1 2, 0 3, 0 4, 1 4, 2 3");
+    let whole = "2 doors, sees 5 junctions: 1 2, 0 3, 0 4, 1 4, 2 3";
+    assert_eq!([far, farther].map(|aid| seen(&ring, aid)), [whole; 2]);
 }
 
 /// The smallest pairs up to these sizes, by exhaustive search: rings of 2r + 2 and 2r + 3 edges.
 #[test]
 fn the_smallest_worlds_that_binoculars_do_not_distinguish_are_rings() {
-    let [near, far] = binoculars();
+    let [near, far, _] = binoculars();
     let searched = [
         (Class::Multigraph, 5, near),
         (Class::Simple, 7, near),
@@ -87,11 +88,16 @@ fn the_smallest_worlds_that_binoculars_do_not_distinguish_are_rings() {
 
 #[test]
 #[ignore = "a long sweep, for `.ci/run --all`"]
-fn the_smallest_worlds_with_parallel_edges_that_binoculars_do_not_distinguish_are_rings() {
-    let [near, far] = binoculars();
+fn the_smallest_larger_worlds_that_binoculars_do_not_distinguish_are_rings() {
+    let [near, far, farther] = binoculars();
     for (aid, radius) in [near, far] {
         are_smallest_rings(&search(Class::Multigraph, 7, aid), radius);
     }
+    for class in [Class::Simple, Class::Planar, Class::Corridor] {
+        are_smallest_rings(&search(class, 9, farther.0), farther.1);
+    }
+    // Of all worlds with up to 7 edges, none looks like another one.
+    assert!(search(Class::Multigraph, 7, farther.0).smallest().is_none());
 }
 
 fn are_smallest_rings(findings: &Findings, radius: usize) {
@@ -117,7 +123,10 @@ fn binoculars_distinguish_the_rings_that_fit_into_them() {
 /// A ball in a grid on a torus of 2r + 2 vertices or more each way is that in the endless grid.
 #[test]
 fn binoculars_do_not_distinguish_large_grids_on_a_torus() {
-    for (aid, radius) in binoculars() {
+    let [near, far, farther] = binoculars();
+    // Such a ball of radius 3 takes more than 128 bits.
+    assert!(!farther.0.is_seen_everywhere(&torus(8, 8)));
+    for (aid, radius) in [near, far] {
         let least = 2 * radius + 2;
         let sizes = [(least, least), (least, least + 1), (least + 2, least)];
         let [one, others @ ..] = sizes.map(|(width, height)| torus(width, height));
@@ -150,7 +159,7 @@ fn is_filled(graph: &EmbeddedGraph, radius: usize) -> bool {
 /// Such a world is distinguished from all worlds, of any genus.
 #[test]
 fn binoculars_identify_planar_worlds_all_of_whose_faces_but_one_are_small() {
-    let [near, far] = binoculars();
+    let [near, far, _] = binoculars();
     for (class, edges, (aid, radius)) in
         [(Class::Multigraph, 5, near), (Class::Simple, 8, near), (Class::Simple, 7, far)]
     {

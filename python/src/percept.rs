@@ -2,8 +2,7 @@
 
 use pyo3::{IntoPyObjectExt, prelude::*, types::PyDict};
 use toposlam_model::percept::{
-    Ball, OtherRobot, Percept as ModelPercept, Sighting, StringView, TeamView,
-    TwoMarkersView,
+    Ball, OtherRobot, Percept as ModelPercept, Sighting, StringView, TeamView, TwoMarkersView,
 };
 
 /// What a robot senses on arriving at a vertex: its degree, and what the marker adds.

@@ -37,6 +37,7 @@ MARKERS = (
     "team-3-round",
     "binoculars-1",
     "binoculars-2",
+    "binoculars-3",
 )
 """The names of the marking aids."""
 

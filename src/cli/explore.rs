@@ -2,6 +2,7 @@
 
 mod own;
 mod report;
+mod senses;
 mod summary;
 
 use std::{
@@ -41,6 +42,7 @@ use crate::{
     story::{PrintedStory, Story, head},
 };
 use report::ExploredWorld;
+use senses::{ExtraSense, SensingRun, check_senses};
 use summary::Summary;
 
 /// Map one world and print the story: each door, percept and hypothesis, and the map
@@ -56,6 +58,9 @@ use summary::Summary;
 /// With --aid KIND, the explorer of another marking aid runs instead: of markers that the robot carries, a string, or
 /// other robots. Undirected markers, and robots without a front, need a world without loops and parallel edges.
 ///
+/// With --senses, in a floor plan, a second robot that also measures lengths or has a compass maps it, too, and its moves
+/// are printed.
+///
 /// With --explorer, a program of yours runs instead, and each of its steps is printed.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
@@ -70,6 +75,7 @@ Examples:
   toposlam explore worlds/building-25.toml --story=summary
   toposlam explore worlds/shape-6.toml --certificate
   toposlam explore worlds/shape-6.toml --algorithm folding --audit
+  toposlam explore worlds/building-25.toml --algorithm folding --senses lengths,compass
   toposlam explore worlds/shape-6.toml --explorer ./mine
 
 In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
@@ -120,6 +126,10 @@ pub(super) struct ExploreArguments {
     #[command(flatten)]
     audit: AuditOption,
 
+    /// Also map the floor plan with these senses: lengths of hallways, which are exact, a compass, or both
+    #[arg(long, value_name = "SENSE", value_delimiter = ',')]
+    senses: Vec<ExtraSense>,
+
     /// Print a shortest walk that proves the map of the world, and compare the run with it
     #[arg(long)]
     certificate: bool,
@@ -141,7 +151,8 @@ pub(super) struct ExploreArguments {
 }
 
 /// Options of runs that explorers do not have.
-const NOT_FOR_EXPLORERS: [&str; 5] = ["algorithm", "choices", "max_darts", "story", "audit"];
+const NOT_FOR_EXPLORERS: [&str; 6] =
+    ["algorithm", "choices", "max_darts", "story", "audit", "senses"];
 
 /// How much of a run is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -181,6 +192,7 @@ impl ExploreArguments {
         let facing = input::start_of(&world, self.start.as_deref())?;
         self.check_outputs(&world)?;
         let algorithm = algorithm_for(self.algorithm, self.marker)?;
+        check_senses(&self.senses, &world, algorithm)?;
         self.explore(algorithm, &world, facing, out)
     }
 
@@ -247,6 +259,7 @@ impl ExploreArguments {
         let moves = run.moves_of_right_map();
         let certificate = || CertificateCost::with_doors(&world.graph, facing, moves);
         run.certificate = self.certificate.then(certificate);
+        run.with_senses = SensingRun::new(&self.senses, algorithm, self.max_darts, (world, facing));
         run.ways =
             algorithm.other_runs(self.choices, (&world.graph, facing), &StopSignal).transpose();
         if let Some(doors) = doors {

@@ -35,7 +35,7 @@ AIDS_AT_VERTEX = ["movable-2", "movable-3", "movable-4",
 AIDS_ALONG_DART = ["movable-directional", "team-2", "team-2-round", "team-3", "team-3-round"]
 AIDS = AIDS_AT_VERTEX + AIDS_ALONG_DART
 # No markers, but what the robot sees around it; only if named, too.
-SENSES = ["binoculars-1", "binoculars-2"]
+SENSES = ["binoculars-1", "binoculars-2", "binoculars-3"]
 CLASSES = ["multigraph", "simple", "corridor", "planar"]
 
 # Embedded graphs with 1, 2, 3, ... edges: OEIS A170946, and A006394 (simple, planar).

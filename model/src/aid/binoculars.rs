@@ -14,7 +14,7 @@ use crate::{
 /// Binoculars that reach so many edges far. They have no places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Binoculars {
-    /// From 1 to 2.
+    /// From 1 to 3.
     radius: u8,
 }
 
@@ -41,7 +41,8 @@ impl Aid for Binoculars {
     fn name(&self) -> &'static str {
         match self.radius {
             1 => "binoculars-1",
-            _ => "binoculars-2",
+            2 => "binoculars-2",
+            _ => "binoculars-3",
         }
     }
 
@@ -51,9 +52,13 @@ impl Aid for Binoculars {
                 "no marker, but binoculars that reach one edge far: which vertices are near, what doors do they have, and \
                  which edges join them?"
             }
-            _ => {
+            2 => {
                 "no marker, but binoculars that reach two edges far: which vertices are near, what doors do they have, and \
                  which edges join them?"
+            }
+            _ => {
+                "no marker, but binoculars that reach three edges far: which vertices are near, what doors do they have, \
+                 and which edges join them?"
             }
         }
     }

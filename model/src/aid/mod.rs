@@ -300,8 +300,9 @@ macro_rules! with_any_aid {
 }
 
 /// The fixed markers, then the aids that move, and then other senses. Each has finitely many states in a graph, so all of them can be
-/// searched; [a string as long as it takes](LaidString::of_any_length) has not, and is not among them.
-pub const AIDS: [AidKind; 24] = [
+/// searched; [a string as long as it takes](LaidString::of_any_length) has not, and is not among them. Nor is
+/// [`DirectionalAndMovable`], which distinguishes what a directional marker distinguishes.
+pub const AIDS: [AidKind; 25] = [
     AidKind::Fixed(MarkerKind::NoMarker),
     AidKind::Fixed(MarkerKind::Undirected),
     AidKind::Fixed(MarkerKind::Directional),
@@ -326,6 +327,7 @@ pub const AIDS: [AidKind; 24] = [
     AidKind::Team(Team::of(3, false)),
     AidKind::Binoculars(Binoculars::of(1)),
     AidKind::Binoculars(Binoculars::of(2)),
+    AidKind::Binoculars(Binoculars::of(3)),
 ];
 
 /// The aids with few states: the fixed markers, and the one that can be carried.

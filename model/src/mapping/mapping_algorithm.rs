@@ -128,6 +128,15 @@ impl MappingAlgorithm {
         }
     }
 
+    /// Whether it uses lengths and directions, if its world has [senses](World::senses).
+    pub fn uses_senses(self) -> bool {
+        match self {
+            Self::Folding | Self::DirectionalAndMovable => true,
+            Self::String(string) => string.length().is_some(),
+            _ => false,
+        }
+    }
+
     /// The most moves that it may make in a world of this size.
     pub fn move_bound(self, edges: usize, vertices: usize) -> u64 {
         with_explorer!(self, new => super::Explorer::move_bound(&new(), edges, vertices))

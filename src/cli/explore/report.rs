@@ -18,6 +18,7 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
+use super::senses::SensingRun;
 use crate::cli::{
     CliError, Outcome,
     certificate_cost::CertificateCost,
@@ -39,6 +40,8 @@ pub(super) struct ExploredWorld<'a> {
     pub(super) carries: bool,
     /// The bijection from the map to the world, or what is wrong.
     result: Result<Bijection, Flaw>,
+    /// With `--senses`.
+    pub(super) with_senses: Option<SensingRun>,
     /// With `--certificate`.
     pub(super) certificate: Option<CertificateCost>,
     /// All runs, with `--choices all`.
@@ -69,6 +72,8 @@ struct RunLine<'a> {
     error: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     certificate: Option<&'a CertificateCost>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with_senses: Option<&'a SensingRun>,
     #[serde(flatten)]
     every_way: Option<EveryWayPart>,
 }
@@ -115,6 +120,7 @@ impl<'a> ExploredWorld<'a> {
             mapped,
             carries,
             result,
+            with_senses: None,
             certificate: None,
             ways: None,
         }
@@ -124,6 +130,7 @@ impl<'a> ExploredWorld<'a> {
         match (&self.result, &self.ways) {
             (Err(Flaw::Error(MappingError::Bound { .. })), _) => Outcome::Incomplete,
             (Err(_), _) | (_, Some(Err(_))) => Outcome::Violated,
+            _ if self.with_senses.as_ref().is_some_and(|run| !run.is_right()) => Outcome::Violated,
             (Ok(_), Some(Ok(ways))) if ways.limit.is_some() => Outcome::Incomplete,
             (Ok(_), _) => Outcome::Holds,
         }
@@ -175,6 +182,7 @@ impl<'a> ExploredWorld<'a> {
             algorithm: is_named.then(|| self.algorithm.name()),
             error: error.or(ways.and_then(|ways| ways.as_ref().err())).map(ToString::to_string),
             certificate: self.certificate.as_ref(),
+            with_senses: self.with_senses.as_ref(),
             every_way: ways.and_then(|ways| ways.as_ref().ok()).map(|ways| EveryWayPart {
                 states: ways.states,
                 states_within_rounds: ways.within_rounds,
@@ -199,6 +207,9 @@ impl<'a> ExploredWorld<'a> {
                 }
             }
             Ok(bijection) => self.print_map(bijection, listed, out)?,
+        }
+        if let Some(run) = &self.with_senses {
+            run.print(out)?;
         }
         if let Some(CertificateCost { moves, doors, ratio }) = &self.certificate {
             let ratio = ratio

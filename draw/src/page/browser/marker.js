@@ -344,6 +344,7 @@ const AIDS = {
   "team-3-round": team(3, false),
   "binoculars-1": binoculars(1),
   "binoculars-2": binoculars(2),
+  "binoculars-3": binoculars(3),
 };
 
 /**

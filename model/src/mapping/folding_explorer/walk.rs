@@ -30,7 +30,9 @@ impl FoldingRun {
         world: &mut W,
     ) -> Mapped<W> {
         let to_marker = mem::take(&mut self.to_marker);
-        let walked = self.walk_to_root(test, &to_marker, world, |_, _, _| true);
+        let walked = self.walk_to_root(test, &to_marker, world, |map, believed, perceived, _| {
+            [map.expected(believed), perceived]
+        });
         self.to_marker = to_marker;
         if walked? && InjectedFlaw::ProofByOtherWalk.is_present() {
             self.believe(test)?;
@@ -39,26 +41,24 @@ impl FoldingRun {
     }
 
     /// Walks to the root of a tree as if a hypothesis were true, until it is confirmed or refuted. Returns whether it
-    /// is confirmed. `agrees` is asked at each place whether the robot may have come in by that dart of the map.
+    /// is confirmed. `compared` returns the percept that is expected by a dart of the map, and the one there.
     pub(super) fn walk_to_root<W: ObservedWorld>(
         &mut self,
         test: HypothesisTest,
         to_root: &BreadthFirstTree,
         world: &mut W,
-        agrees: impl Fn(&PartialMap, Dart, &W) -> bool,
+        compared: impl Fn(&PartialMap, Dart, Percept, &W) -> [Percept; 2],
     ) -> Mapped<W, bool> {
         let HypothesisTest { edge, hypothesis, cost, open, entry, .. } = test;
         self.report(FoldingEvent::Testing { edge, hypothesis, cost }, world);
         let is_new = self.trail.opposite(open).is_none();
         let mut before = self.trail.vertex_count() + usize::from(is_new);
-        let mut perceived = self.take_open(open, world)?;
+        let mut percept = self.take_open(open, world)?;
         let mut believed = entry;
         let is_confirmed = loop {
-            let expected = self.map().expected(believed);
+            let [expected, perceived] = compared(self.map(), believed, percept, world);
             let pose = self.trail.pose();
-            if perceived != expected
-                || !self.trail.senses_agree(pose, self.in_trail[believed.at()])
-                || !agrees(self.map(), believed, world)
+            if perceived != expected || !self.trail.senses_agree(pose, self.in_trail[believed.at()])
             {
                 self.hypotheses.refute(edge, hypothesis);
                 let event = FoldingEvent::Refuted { edge, hypothesis, expected, perceived };
@@ -71,7 +71,7 @@ impl FoldingRun {
             };
             let open = self.trail.opposite(self.trail.behind(self.trail.pose(), door)).is_none();
             before = self.trail.vertex_count() + usize::from(open);
-            perceived = self.go_through(door, world)?;
+            percept = self.go_through(door, world)?;
             believed = next;
         };
         self.report_folding(before, world);

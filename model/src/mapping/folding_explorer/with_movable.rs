@@ -283,8 +283,9 @@ impl WithMovableRun {
         self.to_base.grow_whole(&self.run.walk.map);
         let (to_base, base) = (&self.to_base, self.base);
         let is_confirmed =
-            self.run.walk_to_root(test, to_base, world, |map, believed, world| {
-                world.is_here == (map.vertex(believed) == base)
+            self.run.walk_to_root(test, to_base, world, |map, believed, perceived, world| {
+                let expected = of_both(map.expected(believed), map.vertex(believed) == base);
+                [expected, of_both(perceived, world.is_here)]
             })?;
         if is_confirmed && let Some(far) = self.run.trail.opposite(self.run.in_trail[edge.at()]) {
             let before = self.run.trail.vertex_count();
