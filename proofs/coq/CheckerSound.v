@@ -451,7 +451,8 @@ case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks|from choic
   apply: (covers_alike (w := walked_of text) (k := k)) => //; try exact: knows_at.
   by apply: (@complete_covers WordDirectional _ _ erefl _ p p_sees) => //; apply: knows_at.
 - case: ts {right right_u right_t} => //=; case: walk => [text|] //=.
-  case: visits => [?|] //=; rewrite /check_unexplained; case: ifP => // _; case knowsE: (after_all _ _ _ _ _) => [k|[? ?]] //.
+  case: visits => [?|] //=; rewrite /check_unexplained; case: ifP => // _.
+  case knowsE: (after_all _ _ _ _ _) => [k|[? ?]] //.
   case contraE: (not_contradictory _ _ _ _) => // _ V q [sees doors_exist].
   have known := knows_after_all erefl sees (knows_nothing q) knowsE.
   exact: (contradicted erefl sees known doors_exist contraE).
@@ -461,7 +462,8 @@ case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks|from choic
   apply: in_worldP => // W number T_fits; have /(dart_setP T_fits)[p pE] := from_in.
   by exists p => //; rewrite -pE in differsE; apply: differsP differsE.
 - case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [text|] //=.
-  case: visits => [?|] //=; rewrite /check_diverges; set poses := odflt _ _; case: (first_not _ _) => //; set both := foldl _ _ _.
+  case: visits => [?|] //=; rewrite /check_diverges; set poses := odflt _ _; case: (first_not _ _) => //.
+  set both := foldl _ _ _.
   case remainE: (remain _ _ _ _ _) => [|[? ?] ?] // _.
   apply: in_worldP => // W number T_fits p p_in [sees doors_exist].
   suff in_both : (number p, number p) \in both by apply: (remainP T_fits in_both sees doors_exist remainE).
