@@ -53,7 +53,9 @@ Inductive reason :=
   (* Pairs, images and poses. *)
   | PerceptsDiffer of N & N | NoPair of N & N | PerceptsSame | NoImage of N | NotKept of N
   | ImageShared of N | ImageTwice | WalksTooMany
-  | PosesLeftOut of N | OtherPose of N.
+  | PosesLeftOut of N | OtherPose of N
+  (* Visits. *)
+  | NoAlternative of N | NotSo | VisitsMade.
 
 Inductive outcome := Accepted | Refused of place & reason.
 
@@ -250,6 +252,80 @@ Fixpoint remain (T : tables) (marker : marker_word) (poses : seq (N * N)) (seen 
             seen doors
       end
   end.
+
+(** * Visits *)
+
+Section Visits.
+
+Variables (T : tables) (marker : marker_word).
+
+Definition has_percept (d : N) (seen : N * sighting_word) : bool :=
+  (seen.1 == degree_in T d) && same_sighting seen.2 (sighting_in T marker d).
+
+(** The poses behind the doors from [i] on and below [n]. *)
+Fixpoint behind_doors (fuel : seq N) (i n d : N) (poses : seq N) : seq N :=
+  if i == n then poses
+  else if fuel is _ :: fuel then behind_doors fuel (N.succ i) n d (traverse_in T d i :: poses)
+  else poses.
+
+(** The poses with which a robot can come to the next vertex. *)
+Definition onward (back last : bool) (a : alternative) (d : N) : seq N :=
+  match a with
+  | NoVertex => [:: if back then opposite_in T d else d]
+  | Junction seen door =>
+      if ~~ has_percept d seen then [::]
+      else if door is Some i then if N.ltb i seen.1 then [:: traverse_in T d i] else [::]
+      else if last then [:: d]
+      else behind_doors (dart_list T) N0 seen.1 d [::]
+  end.
+
+(** A list without repetition, with the table of what is in it. *)
+Definition add_pose (poses : seq N * table unit) (d : N) : seq N * table unit :=
+  if has_entry poses.2 d then poses else (d :: poses.1, put poses.2 d tt).
+
+(** The poses after a visit of a robot with one of some poses. *)
+Definition after_visit (v : visit_text) (last : bool) (poses : seq N) : seq N :=
+  (foldl (fun found d =>
+            foldl (fun found a => foldl add_pose found (onward (turned_back v) last a d)) found (alternatives v))
+     ([::], empty) poses).1.
+
+Fixpoint after_visits (visits : seq visit_text) (poses : seq N) : seq N :=
+  if visits is v :: others then
+    if poses is [::] then [::] else after_visits others (after_visit v (nilp others) poses)
+  else poses.
+
+(** The pose after a visit, with what was chosen for it. *)
+Definition chosen (back last : bool) (a : alternative) (door : option N) (d : N) : option N :=
+  match a, door with
+  | NoVertex, None => Some (if back then opposite_in T d else d)
+  | Junction seen known, _ =>
+      if ~~ has_percept d seen then None
+      else
+        match known, door with
+        | Some i, None => if N.ltb i seen.1 then Some (traverse_in T d i) else None
+        | None, Some i => if last then None else if N.ltb i seen.1 then Some (traverse_in T d i) else None
+        | None, None => if last then Some d else None
+        | _, _ => None
+        end
+  | _, _ => None
+  end.
+
+Fixpoint alternative_at (alternatives : seq alternative) (n : N) : option alternative :=
+  if alternatives is a :: others then if n == N0 then Some a else alternative_at others (N.pred n) else None.
+
+Fixpoint wrong_choice (part : N) (visits : seq visit_text) (choices : seq (N * option N)) (d : N) :
+    option (N * reason) :=
+  match visits, choices with
+  | v :: visits, (n, door) :: choices =>
+      if alternative_at (alternatives v) n is Some a then
+        if chosen (turned_back v) (nilp visits) a door d is Some e then wrong_choice (N.succ part) visits choices e
+        else Some (part, NotSo)
+      else Some (part, NoAlternative n)
+  | [::], [::] => None
+  | _, _ => Some (part, LengthsDiffer)
+  end.
+
+End Visits.
 
 (** * Steps *)
 
@@ -638,23 +714,37 @@ Definition check_not_isomorphic (T U : tables) (walks : seq (N * N * seq N)) : o
       else Accepted
   else Refused InClaim NothingClaimed.
 
+Definition check_fits (marker : marker_word) (T : tables) (visits : seq visit_text) (from : N)
+    (choices : seq (N * option N)) : outcome :=
+  if ~~ has_entry (dart_set T) from then Refused InClaim (NoDart from)
+  else refused_at (wrong_choice T marker N0 visits choices from).
+
+Definition check_misfits (marker : marker_word) (T : tables) (visits : seq visit_text) (from : option (seq N)) :
+    outcome :=
+  let poses := odflt (dart_list T) from in
+  if first_not (has_entry (dart_set T)) poses is Some d then Refused InClaim (NoDart d)
+  else if after_visits T marker visits poses is [::] then Accepted
+  else Refused InClaim VisitsMade.
+
 (** The checker. *)
 Definition check (p : prepared) (c : claim) : outcome :=
   let marker := marker_line (set p) in
   if world_wrong p is Some (i, reason) then Refused (InWorld i) reason
   else
-    match c, world_tables p, walk_tables p with
-    | Determined from steps, [:: (_, T)], Some w => check_determined marker T w from steps
-    | Unexplained steps c, [::], Some w => check_unexplained marker w steps c
-    | Conforms from, [:: (_, T)], Some w => check_conforms marker T w from
-    | Diverges from, [:: (_, T)], Some w => check_diverges marker T w from
-    | Indistinguishable pairs, [:: (_, T); (_, U)], None =>
+    match c, world_tables p, walk_tables p, visits_line (set p) with
+    | Determined from steps, [:: (_, T)], Some w, None => check_determined marker T w from steps
+    | Unexplained steps c, [::], Some w, None => check_unexplained marker w steps c
+    | Conforms from, [:: (_, T)], Some w, None => check_conforms marker T w from
+    | Diverges from, [:: (_, T)], Some w, None => check_diverges marker T w from
+    | Indistinguishable pairs, [:: (_, T); (_, U)], None, None =>
         if pairs is [::] then Refused InClaim NothingClaimed
         else refused_at (wrong_pair T U marker marker (pair_table pairs) N0 pairs)
-    | Distinguishable walks, [:: (_, T); (_, U)], None =>
+    | Distinguishable walks, [:: (_, T); (_, U)], None, None =>
         if walks is [::] then Refused InClaim NothingClaimed
         else refused_at (not_all_distinguished T U marker marker N0 walks)
-    | Isomorphic pairs, [:: (_, T); (_, U)], None => check_isomorphic T U pairs
-    | NotIsomorphic walks, [:: (_, T); (_, U)], None => check_not_isomorphic T U walks
-    | _, _, _ => Refused InClaim WrongParts
+    | Isomorphic pairs, [:: (_, T); (_, U)], None, None => check_isomorphic T U pairs
+    | NotIsomorphic walks, [:: (_, T); (_, U)], None, None => check_not_isomorphic T U walks
+    | Fits from choices, [:: (_, T)], None, Some visits => check_fits marker T visits from choices
+    | Misfits from, [:: (_, T)], None, Some visits => check_misfits marker T visits from
+    | _, _, _, _ => Refused InClaim WrongParts
     end.

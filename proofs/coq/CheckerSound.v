@@ -119,6 +119,131 @@ Qed.
 
 End World.
 
+(** * Visits *)
+
+Section Visits.
+
+Variables (T : tables) (W : start) (number : W -> N) (marker : marker_word).
+Hypothesis T_fits : fits T number.
+
+Let M := marker_of marker.
+
+Lemma has_perceptP (d : W) seen : has_percept T marker (number d) seen = (percept_of seen == perceive M d).
+Proof. by case: seen => g s; rewrite -(perceive_in marker T_fits). Qed.
+
+Lemma degree_dart_list (d : W) : degree d <= size (dart_list T).
+Proof.
+apply: leq_trans (max_card _) _; rewrite cardE -(size_map number); apply: uniq_leq_size.
+  by rewrite (map_inj_uniq (number_inj T_fits)) enum_uniq.
+by move=> _ /mapP[e _ ->]; apply/(dart_listP T_fits); exists e.
+Qed.
+
+Lemma mem_behind_doors fuel i n d poses x : x \in poses \/
+    (exists2 j, N.to_nat i <= N.to_nat j < N.to_nat n & x = traverse_in T d j) ->
+  N.to_nat n - N.to_nat i <= size fuel -> x \in behind_doors T fuel i n d poses.
+Proof.
+elim: fuel i poses => [|a fuel IH] i poses /=; rewrite eqbP; case: eqP => [->|neq] found.
+- by move=> _; case: found => // -[j /andP[le lt]]; rewrite ltnNge le in lt.
+- rewrite leqn0 subn_eq0 => le; case: found => // -[j /andP[i_j j_n]].
+  by have := leq_trans j_n (leq_trans le i_j); rewrite ltnn.
+- by move=> _; case: found => // -[j /andP[le lt]]; rewrite ltnNge le in lt.
+move=> le; apply: IH; last by rewrite to_natS subnS -ltnS; case: (_ - _) le.
+case: found => [in_poses|[j /andP[i_j j_n] ->]]; first by left; rewrite inE in_poses orbT.
+case: (ltngtP (N.to_nat i) (N.to_nat j)) i_j => // [lt|/to_nat_inj<-] _; last by left; rewrite mem_head.
+by right; exists j; rewrite // to_natS lt.
+Qed.
+
+Lemma onwardP back last a (p q : W) : visits_by M back last a p q ->
+  number q \in onward T marker back last a (number p).
+Proof.
+case: a => [->|seen [i|]] /=; first by case: back; rewrite ?opposite_inE // mem_head.
+  case=> seenE lt ->; rewrite has_perceptP seenE eqxx /= ltbP.
+  have -> : N.to_nat seen.1 = degree p by case: seenE.
+  by rewrite lt traverse_inE // mem_head.
+case=> seenE; rewrite has_perceptP seenE eqxx /=; case: last => [->|[i lt ->]]; first exact: mem_head.
+have gE : N.to_nat seen.1 = degree p by case: seenE.
+apply: mem_behind_doors; last by rewrite subn0 gE degree_dart_list.
+by right; exists (N.of_nat i); rewrite ?traverse_inE // Nnat.Nat2N.id // gE.
+Qed.
+
+Let consistent (found : seq N * table unit) := forall x, has_entry found.2 x -> x \in found.1.
+
+Lemma add_posesP poses found : consistent found -> let found' := foldl (@add_pose) found poses in
+  consistent found' /\ forall x, x \in found.1 \/ x \in poses -> x \in found'.1.
+Proof.
+elim: poses found => [|y poses IH] found ok /=; first by split=> // x [].
+have [ok' [here there]] : consistent (add_pose found y) /\
+    y \in (add_pose found y).1 /\ forall x, x \in found.1 -> x \in (add_pose found y).1.
+  rewrite /add_pose; case: ifP => [/ok y_in|_] /=; first by [].
+  split=> [x|]; last by split=> [|x x_in]; rewrite ?mem_head // inE x_in orbT.
+  by rewrite /has_entry find_put inE /=; case: eqP => //= _ /ok ->.
+have [ok2 mem2] := IH _ ok'; split=> // x [x_in|]; first by apply: mem2; left; apply: there.
+by rewrite inE => /predU1P[->|x_in]; apply: mem2; [left | right].
+Qed.
+
+Lemma fold_keeps (S : Type) (f : seq N * table unit -> S -> seq N * table unit) (s : seq S) found :
+  (forall found a, consistent found ->
+     consistent (f found a) /\ forall x, x \in found.1 -> x \in (f found a).1) ->
+  consistent found -> let found' := foldl f found s in
+  [/\ consistent found', forall x, x \in found.1 -> x \in found'.1
+    & forall a x, List.In a s -> (forall found, consistent found -> x \in (f found a).1) -> x \in found'.1].
+Proof.
+move=> keeps; elim: s found => [|a s IH] found ok //=; have [ok' sub] := keeps found a ok.
+have [ok2 sub2 mem2] := IH _ ok'; split=> // [x /sub /sub2 //|b x [<- in_b|]]; last exact: mem2.
+by apply/sub2/in_b.
+Qed.
+
+Lemma after_visitP v last a poses (p q : W) : number p \in poses -> List.In a (alternatives v) ->
+  visits_by M (turned_back v) last a p q -> number q \in after_visit T marker v last poses.
+Proof.
+move=> p_in a_in /onwardP q_onward; rewrite /after_visit.
+pose by_alternative d found a := foldl add_pose found (onward T marker (turned_back v) last a d).
+pose by_pose found d := foldl (by_alternative d) found (alternatives v).
+have one d found a' : consistent found -> consistent (by_alternative d found a') /\
+    forall x, x \in found.1 -> x \in (by_alternative d found a').1.
+  move=> ok; have [ok' mem'] := add_posesP (onward T marker (turned_back v) last a' d) ok.
+  by split=> // x x_in; apply: mem'; left.
+have each d found ok := @fold_keeps _ (by_alternative d) (alternatives v) found (one d) ok.
+have none_consistent : consistent ([::], empty) by move=> x; rewrite /has_entry find_empty.
+have poses_in : List.In (number p) poses.
+  by elim: poses p_in => //= d poses IH; rewrite inE => /predU1P[->|/IH]; [left | right].
+have [_ _ all_in] := @fold_keeps _ by_pose poses ([::], empty)
+  (fun found d ok => let: And3 ok' sub _ := each d found ok in conj ok' sub) none_consistent.
+apply: all_in poses_in _ => found ok; have [_ _ in_each] := each (number p) found ok.
+by apply: in_each a_in _ => found' ok'; apply: (add_posesP _ ok').2; right.
+Qed.
+
+Lemma after_visitsP visits poses (p : W) : makes M p visits -> number p \in poses ->
+  after_visits T marker visits poses <> [::].
+Proof.
+elim: visits p poses => [|v visits IH] p poses /=; first by case: poses.
+move=> [a [q [a_in p_q q_makes]]] p_in; case: poses p_in => // d poses p_in.
+exact: IH q_makes (after_visitP p_in a_in p_q).
+Qed.
+
+Lemma alternative_atP s n a : alternative_at s n = Some a -> List.In a s.
+Proof. by elim: s n => //= b s IH n; case: ifP => [_ [->]|_ /IH]; [left | right]. Qed.
+
+Lemma wrong_choiceP part visits choices (p : W) : wrong_choice T marker part visits choices (number p) = None ->
+  makes M p visits.
+Proof.
+elim: visits choices part p => [|v visits IH] [|[n door] choices] part p //=.
+case aE: (alternative_at _ _) => [a|] //; case chosenE: (chosen _ _ _ _ _ _ _) => [e|] //.
+suff [q qE p_q] : exists2 q, number q = e & visits_by M (turned_back v) (nilp visits) a p q.
+  by rewrite -qE => /IH q_makes; exists a, q; split=> //; apply: alternative_atP aE.
+move: chosenE; case: a {aE} => [|seen known] /=.
+  case: door => // -[<-]; exists (if turned_back v then opposite p else p) => //.
+  by case: (turned_back v); rewrite ?opposite_inE.
+rewrite has_perceptP; case: eqP => //= seenE; have gE : N.to_nat seen.1 = degree p by case: seenE.
+case: known door => [i|] [j|] //; rewrite ?ltbP ?gE.
+- by case: ifP => // lt [<-]; exists (traverse p (N.to_nat i)); rewrite ?traverse_inE.
+- case: (nilp visits) => //; case: ifP => // lt [<-]; exists (traverse p (N.to_nat j)); rewrite ?traverse_inE //.
+  by split=> //; exists (N.to_nat j).
+by case: (nilp visits) => // -[<-]; exists p.
+Qed.
+
+End Visits.
+
 (** * Two worlds *)
 
 Section Pairs.
@@ -307,14 +432,14 @@ Qed.
 Lemma checker_sound (s : setting) (c : claim) : check (prepare s) c = Accepted -> claim_true s c.
 Proof.
 rewrite /check; case wrongE: (world_wrong _) => [[i reason]|] //.
-case: s wrongE => ts marker walk /= /first_wrongP right.
+case: s wrongE => ts marker walk visits /= /first_wrongP right.
 have right_t t us : ts = t :: us -> wrong_world t (tables_of t) = None.
   by move=> tsE; have := right 0; rewrite tsE => /(_ isT t (tables_of t)).
 have right_u t u us : ts = [:: t, u & us] -> wrong_world u (tables_of u) = None.
   by move=> tsE; have := right 1; rewrite tsE => /(_ isT t (tables_of t)).
-case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks] /=.
+case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks|from choices|from] /=.
 - case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [text|] //=.
-  rewrite /check_determined; case: marker => //; case: ifP => // /negbFE from_in.
+  case: visits => [?|] //=; rewrite /check_determined; case: marker => //; case: ifP => // /negbFE from_in.
   case differsE: (differs _ _ _ _ _ _) => [[visit reason]|] //.
   case knowsE: (after_all _ _ _ _ _) => [k|[? ?]] //; case: ifP => // complete_k _.
   apply: in_worldP => // W number T_fits; have /(dart_setP T_fits)[p pE] := from_in.
@@ -326,17 +451,19 @@ case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks] /=.
   apply: (covers_alike (w := walked_of text) (k := k)) => //; try exact: knows_at.
   by apply: (@complete_covers WordDirectional _ _ erefl _ p p_sees) => //; apply: knows_at.
 - case: ts {right right_u right_t} => //=; case: walk => [text|] //=.
-  rewrite /check_unexplained; case: ifP => // _; case knowsE: (after_all _ _ _ _ _) => [k|[? ?]] //.
+  case: visits => [?|] //=; rewrite /check_unexplained; case: ifP => // _.
+  case knowsE: (after_all _ _ _ _ _) => [k|[? ?]] //.
   case contraE: (not_contradictory _ _ _ _) => // _ V q [sees doors_exist].
   have known := knows_after_all erefl sees (knows_nothing q) knowsE.
   exact: (contradicted erefl sees known doors_exist contraE).
 - case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [text|] //=.
-  rewrite /check_conforms; case: ifP => // /negbFE from_in.
+  case: visits => [?|] //=; rewrite /check_conforms; case: ifP => // /negbFE from_in.
   case differsE: (differs _ _ _ _ _ _) => [[visit reason]|] // _.
   apply: in_worldP => // W number T_fits; have /(dart_setP T_fits)[p pE] := from_in.
   by exists p => //; rewrite -pE in differsE; apply: differsP differsE.
 - case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [text|] //=.
-  rewrite /check_diverges; set poses := odflt _ _; case: (first_not _ _) => //; set both := foldl _ _ _.
+  case: visits => [?|] //=; rewrite /check_diverges; set poses := odflt _ _; case: (first_not _ _) => //.
+  set both := foldl _ _ _.
   case remainE: (remain _ _ _ _ _) => [|[? ?] ?] // _.
   apply: in_worldP => // W number T_fits p p_in [sees doors_exist].
   suff in_both : (number p, number p) \in both by apply: (remainP T_fits in_both sees doors_exist remainE).
@@ -344,21 +471,36 @@ case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks] /=.
     by rewrite /poses; case: from p_in {poses both remainE} => //= _; apply/(dart_listP T_fits); exists p.
   exact: (mem_fold_filter (test := xpredT) (fun d => (d, d)) [::] p_poses).
 - case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-  case: walk => [?|] //=; case: pairs => // pair pairs; set all_pairs := pair :: pairs; rewrite /refused_at.
+  case: walk => [?|] //=; case: visits => [?|] //=.
+  case: pairs => // pair pairs; set all_pairs := pair :: pairs; rewrite /refused_at.
   case wrongE: (wrong_pair _ _ _ _ _ _ _) => [[? ?]|] // _.
   apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits [x y] in_pairs.
   have [p [q [pE qE same]]] := pairs_alike T_fits U_fits wrongE in_pairs.
   by exists p => //; exists q.
 - case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-  case: walk => [?|] //=; case: walks => // first walks; set all_walks := first :: walks; rewrite /refused_at.
+  case: walk => [?|] //=; case: visits => [?|] //=.
+  case: walks => // first walks; set all_walks := first :: walks; rewrite /refused_at.
   case wrongE: (not_all_distinguished _ _ _ _ _ _) => [[? ?]|] // _.
   apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits pair doors in_walks.
   have [p [q [pE qE apart]]] := not_all_distinguishedP T_fits U_fits wrongE in_walks.
   by exists p => //; exists q.
 - case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-  case: walk => [?|] //= accepted; apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
+  case: walk => [?|] //=; case: visits => [?|] //= accepted.
+  apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
   exact: (images_isomorphic T_fits U_fits accepted).
-case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-case: walk => [?|] //= accepted; apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
-exact: (walks_not_isomorphic T_fits U_fits accepted).
+- case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
+  case: walk => [?|] //=; case: visits => [?|] //= accepted.
+  apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
+  exact: (walks_not_isomorphic T_fits U_fits accepted).
+- case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [?|] //=.
+  case: visits => [visits|] //=; rewrite /check_fits; case: ifP => // /negbFE from_in; rewrite /refused_at.
+  case wrongE: (wrong_choice _ _ _ _ _ _) => [[? ?]|] // _.
+  apply: in_worldP => // W number T_fits; have /(dart_setP T_fits)[p pE] := from_in.
+  by exists p => //; rewrite -pE in wrongE; apply: wrong_choiceP wrongE.
+case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [?|] //=.
+case: visits => [visits|] //=; rewrite /check_misfits; set poses := odflt _ _; case: (first_not _ _) => //.
+case afterE: (after_visits _ _ _ _) => [|? ?] // _.
+apply: in_worldP => // W number T_fits p p_in p_makes.
+suff p_poses : number p \in poses by apply: (after_visitsP T_fits p_makes p_poses afterE).
+by rewrite /poses; case: from p_in {poses afterE} => //= _; apply/(dart_listP T_fits); exists p.
 Qed.

@@ -2,6 +2,7 @@
     [docs/proofs-of-verdicts.md]; the checker is in [Checker.v]. Numbers are binary, for the program that is
     extracted from it. *)
 
+From Coq Require List.
 From Coq Require Import BinNat.
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Markers Walks.
@@ -33,11 +34,18 @@ Record walk_text := WalkText {
   door_lines : seq N
 }.
 
+(** Where percepts are not certain, a visit has alternatives: that there is no vertex; or a percept, and the door that
+    was taken, if it is known. If there is no vertex, a robot has gone through, or it has turned back. *)
+Inductive alternative := NoVertex | Junction of N * sighting_word & option N.
+
+Record visit_text := VisitText { turned_back : bool; alternatives : seq alternative }.
+
 (** What all claims of a proof are about. *)
 Record setting := Setting {
   worlds : seq world_text;
   marker_line : marker_word;
-  walk_line : option walk_text
+  walk_line : option walk_text;
+  visits_line : option (seq visit_text)
 }.
 
 (** The edge of a move, from its visit to the next or back. *)
@@ -50,7 +58,7 @@ Inductive contradiction :=
   | ByStep of step | BySightings of N & N | ByEdge of N | ByPercept of N | ByDoor of N | ByNoMarker.
 
 (** The claims, each with what its proof needs. Darts are given by their numbers. Without a list of darts, a walk
-    diverges from any. *)
+    diverges from any, and visits misfit any. What is chosen for a visit is an alternative, and a door. *)
 Inductive claim :=
   | Determined of N & seq step
   | Unexplained of seq step & contradiction
@@ -59,7 +67,9 @@ Inductive claim :=
   | Indistinguishable of seq (N * N)
   | Distinguishable of seq (N * N * seq N)
   | Isomorphic of seq (N * N)
-  | NotIsomorphic of seq (N * N * seq N).
+  | NotIsomorphic of seq (N * N * seq N)
+  | Fits of N & seq (N * option N)
+  | Misfits of option (seq N).
 
 (** * What it says *)
 
@@ -97,6 +107,25 @@ Definition seen_of (w : walk_text) : seq percept := map percept_of (see_lines w)
 (** From this pose the walk has these percepts, and the doors that it takes exist. *)
 Definition gives (M : marker) (W : start) (pose : W) (w : walk_text) : Prop :=
   percepts M pose (doors_of (door_lines w)) = seen_of w /\ passable pose (doors_of (door_lines w)).
+
+(** A robot with a pose visits by an alternative, and comes to the next vertex with another pose. At the last visit it
+    stays where it is if its door is not known. *)
+Definition visits_by (M : marker) (W : start) (back last : bool) (a : alternative) (pose next : W) : Prop :=
+  match a with
+  | NoVertex => next = if back then opposite pose else pose
+  | Junction seen (Some i) =>
+      [/\ perceive M pose = percept_of seen, N.to_nat i < degree pose & next = traverse pose (N.to_nat i)]
+  | Junction seen None =>
+      perceive M pose = percept_of seen /\
+      if last then next = pose else exists2 i, i < degree pose & next = traverse pose i
+  end.
+
+(** With one alternative of each visit, from this pose. *)
+Fixpoint makes (M : marker) (W : start) (pose : W) (visits : seq visit_text) : Prop :=
+  if visits is v :: others then
+    exists a next,
+      [/\ List.In a (alternatives v), visits_by M (turned_back v) (nilp others) a pose next & makes M next others]
+  else True.
 
 (** Each dart of a vertex with the next one clockwise: the last with the first. *)
 Definition clockwise_pairs (line : seq N) : seq (N * N) := zip line (rot 1 line).
@@ -147,5 +176,14 @@ Definition claim_true (s : setting) (c : claim) : Prop :=
       in_world t (fun V _ => in_world u (fun W _ => isomorphic V W))
   | NotIsomorphic _, [:: t; u], _ =>
       in_world t (fun V _ => in_world u (fun W _ => ~ isomorphic V W))
+  | Fits from _, [:: t], _ =>
+      if visits_line s is Some visits then
+        in_world t (fun W number => at_dart number from (fun pose : W => makes M pose visits))
+      else False
+  | Misfits from, [:: t], _ =>
+      if visits_line s is Some visits then
+        in_world t (fun W number => forall pose : W,
+          (if from is Some poses then number pose \in poses else true) -> ~ makes M pose visits)
+      else False
   | _, _, _ => False
   end.

@@ -84,10 +84,12 @@ let sightings =
   [ ("nothing", WordNothing); ("lying", WordLying); ("two", WordTwo); ("first", WordFirst); ("second", WordSecond);
     ("both", WordBoth); ("passed", WordPassed); ("along", WordAlong); ("against", WordAgainst) ]
 
-let see r = function
-  | [ "see"; degree; "pointing"; i ] -> Some (number_of r degree, WordPointing (number_of r i))
-  | [ "see"; degree; word ] when List.mem_assoc word sightings -> Some (number_of r degree, List.assoc word sightings)
+let percept r degree = function
+  | [ "pointing"; i ] -> Some (number_of r degree, WordPointing (number_of r i))
+  | [ word ] when List.mem_assoc word sightings -> Some (number_of r degree, List.assoc word sightings)
   | _ -> None
+
+let see r = function "see" :: degree :: sighting -> percept r degree sighting | _ -> None
 
 let door r = function [ "door"; i ] -> Some (number_of r i) | _ -> None
 
@@ -102,6 +104,34 @@ let walk r =
         ({ see_lines = items seen; door_lines = List.rev doors }, places seen)
   in
   go [] []
+
+(* Visits with alternatives. *)
+let alternative r = function
+  | [ "none" ] -> Some NoVertex
+  | "junction" :: degree :: door :: sighting -> (
+      let door = if door = "any" then None else Some (number_of r door) in
+      match (percept r degree sighting, door) with
+      | Some (degree, _), Some i when not (N.ltb i degree) -> malformed r "the door is not below the degree"
+      | Some seen, door -> Some (Junction (seen, door))
+      | None, _ -> None)
+  | _ -> None
+
+let visit r = function [ "visit"; "through" ] -> Some false | [ "visit"; "back" ] -> Some true | _ -> None
+
+let visits r =
+  ignore (taken r);
+  let rec go found =
+    if found <> [] && read_words (visit r) r = None then List.rev found
+    else
+      let turned_back, _ = line r "visit through or visit back" (visit r) in
+      go ({ turned_back; alternatives = items (lines r (alternative r)) } :: found)
+  in
+  go []
+
+let choice r = function
+  | [ "choose"; k ] -> Some (number_of r k, None)
+  | [ "choose"; k; i ] -> Some (number_of r k, Some (number_of r i))
+  | _ -> None
 
 let passage r word =
   let move () = number_of r (String.sub word 1 (String.length word - 1)) in
@@ -158,6 +188,11 @@ let claim r = function
       (Unexplained (items steps, last), Array.append (places steps) [| at |])
   | "conforms" -> (Conforms (from_dart r), [||])
   | "diverges" -> (Diverges (fst (line r "from D... or from any" (poses r))), [||])
+  | "fits" ->
+      let from = from_dart r in
+      let choices = lines r (choice r) in
+      (Fits (from, items choices), places choices)
+  | "misfits" -> (Misfits (fst (line r "from D... or from any" (poses r))), [||])
   | "indistinguishable" -> let pairs = lines r (pair r "pair") in (Indistinguishable (items pairs), places pairs)
   | "distinguishable" -> let walks = walks r in (Distinguishable (items walks), places walks)
   | "isomorphic" -> let images = lines r (pair r "image") in (Isomorphic (items images), places images)
@@ -175,13 +210,13 @@ let why = function
   | EdgesDiffer d -> say "dart %d does not stand in one edge" (int d)
   | NotConnected d -> say "dart %d is not reached from the facing dart" (int d)
   | TablesWrong -> "this is no world"
-  | WrongParts -> "the claim needs other parts before it: one world, two or none, and a walk or none"
+  | WrongParts -> "the claim needs other parts before it"
   | OnlyDirectional -> "this needs a directional marker"
   | NothingClaimed -> "nothing is claimed"
   | DegreeIs degree -> say "here the degree is %d" (int degree)
   | SightingDiffers -> "here the sighting is another one"
   | DoorMissing i -> say "there is no door %d" (int i)
-  | LengthsDiffer -> "a walk has a door between any two percepts"
+  | LengthsDiffer -> "something is missing, or too much: a door of the walk, or a choice of a visit"
   | GivesAll d -> say "from dart %d the walk gives these percepts" (int d)
   | NoVisit k -> say "there is no visit %d" (int k)
   | NoMove m -> say "there is no move %d" (int m)
@@ -202,9 +237,13 @@ let why = function
   | ImageTwice -> "a dart has an image twice"
   | WalksTooMany -> "a dart of the second world has two walks"
   | PosesLeftOut d -> say "dart %d of the second world is left out" (int d)
+  | NoAlternative n -> say "there is no alternative %d" (int n)
+  | NotSo -> "the robot does not make this visit so"
+  | VisitsMade -> "a robot from one of these poses makes these visits"
   | OtherPose d -> say "the pose %d in the first world is not that of the first walk" (int d)
 
 let proved s c =
+  let visits_made () = match s.visits_line with Some visits -> List.length visits | None -> 0 in
   let edges () = match s.worlds with t :: _ -> List.length t.edge_lines | [] -> 0 in
   let visits () = match s.walk_line with Some w -> List.length w.see_lines | None -> 0 in
   match c with
@@ -213,6 +252,8 @@ let proved s c =
   | Conforms _ -> say "conforms: %d edges, %d visits" (edges ()) (visits ())
   | Diverges None -> say "diverges: %d edges, %d visits, from any pose" (edges ()) (visits ())
   | Diverges (Some poses) -> say "diverges: %d visits, from %d poses" (visits ()) (List.length poses)
+  | Fits _ -> say "fits: %d edges, %d visits" (edges ()) (visits_made ())
+  | Misfits _ -> say "misfits: %d edges, %d visits" (edges ()) (visits_made ())
   | Indistinguishable pairs -> say "indistinguishable: %d pairs" (List.length pairs)
   | Distinguishable walks -> say "distinguishable: %d walks" (List.length walks)
   | Isomorphic _ -> say "isomorphic: %d edges" (edges ())
@@ -233,7 +274,8 @@ let proof print r =
     line r "world or marker KIND" (function [ "marker"; kind ] -> List.assoc_opt kind markers | _ -> None) in
   let walked = if r.words = Some [ "walk" ] then Some (walk r) else None in
   let walk_line = match walked with Some (text, _) -> Some text | None -> None in
-  let s = { worlds = items worlds; marker_line; walk_line } in
+  let visits_line = if r.words = Some [ "visits" ] then Some (visits r) else None in
+  let s = { worlds = items worlds; marker_line; walk_line; visits_line } in
   let prepared = prepare s in
   let rec claims count =
     match r.words with
