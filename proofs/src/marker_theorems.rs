@@ -29,6 +29,8 @@ const MARKERS: &[&str] = &[
     "movable-4-distinct",
 ];
 const ROUND_TEAMS: &[&str] = &["team-2-round", "team-3-round"];
+/// The aids that move and have a front.
+const WITH_FRONT: &[&str] = &["movable-directional", "movable+directional", "team-2", "team-3"];
 /// The aids that are seen only at vertices, but for one marker.
 const AT_VERTICES: &[&str] = &[
     "movable-2",
@@ -59,7 +61,7 @@ pub const MARKER_THEOREMS: [MarkerTheorem; 17] = [
     no_robot(AT_VERTICES, &[Class::Multigraph], "aids_at_vertices_impossible"),
     one_robot(MARKERS, SIMPLE, "movable_markers_suffice_simple"),
     one_robot(ROUND_TEAMS, SIMPLE, "round_team_suffices_simple"),
-    one_robot(&["movable-directional", "team-2", "team-3"], EVERY, "front_suffices"),
+    one_robot(WITH_FRONT, EVERY, "front_suffices"),
     one_robot(&["string-1", "string-2", "string-3"], EVERY, "string_suffices"),
 ];
 

@@ -28,6 +28,7 @@ MARKERS = (
     "movable-3-distinct",
     "movable-4-distinct",
     "movable-directional",
+    "movable+directional",
     "string-1",
     "string-2",
     "string-3",

@@ -32,7 +32,8 @@ KINDS = ["none", "undirected", "directional", "undirected-edge", "directed-edge"
 AIDS_AT_VERTEX = ["movable-2", "movable-3", "movable-4",
                   "movable-2-distinct", "movable-3-distinct", "movable-4-distinct",
                   "string-1", "string-2", "string-3"]
-AIDS_ALONG_DART = ["movable-directional", "team-2", "team-2-round", "team-3", "team-3-round"]
+AIDS_ALONG_DART = ["movable-directional", "movable+directional",
+                   "team-2", "team-2-round", "team-3", "team-3-round"]
 AIDS = AIDS_AT_VERTEX + AIDS_ALONG_DART
 # No markers, but what the robot sees around it; only if named, too.
 SENSES = ["binoculars-1", "binoculars-2", "binoculars-3"]
@@ -251,6 +252,8 @@ def start_states(kind, world):
         return {(pose, (here,) * number) for pose in poses}
     if name == "movable-directional":
         return {(pose, facing) for pose in poses}
+    if name == "movable+directional":
+        return {(pose, facing, here) for pose in poses}
     if name == "string":
         return {(pose, here, (), True) for pose in poses}
     return {(pose,) * number for pose in poses}  # a team
@@ -343,7 +346,7 @@ def states(kind, world):
 
 def aid_parts(kind):
     """The name of the aid; how many markers, edges' lengths of string, or robots; and its variant."""
-    if kind == "movable-directional":
+    if kind in ("movable-directional", "movable+directional"):
         return kind, 1, None
     name, number, *variant = kind.split("-")
     return name, int(number), variant[0] if variant else None
@@ -393,6 +396,18 @@ def with_directional_marker(state, opposite, doors):
     return (len(doors[pose]), None), next_states
 
 
+def with_two_markers(state, opposite, doors):
+    """The robot's pose, the dart along which the directional marker points, and the place of the one
+    that is carried."""
+    pose, along, place = state
+    here = tuple(sorted(doors[pose]))
+    door = doors[pose].index(along) if along in here else None
+    next_states = [(opposite[dart], along, place) for dart in doors[pose]]
+    if place in (here, CARRIED):
+        next_states.append((pose, along, here if place == CARRIED else CARRIED))
+    return (len(here), door, place == here, place == CARRIED), next_states
+
+
 def with_string(state, opposite, doors, length):
     """The robot's pose; the vertex of the fixed end; the string's way from there, as the darts by
     which the robot left when it laid it; and whether the robot holds the free end."""
@@ -438,6 +453,7 @@ def reachable_states(kind, world):
     name, number, variant = aid_parts(kind)
     look, more = {"movable": (with_markers, [variant == "distinct"]),
                   "movable-directional": (with_directional_marker, []),
+                  "movable+directional": (with_two_markers, []),
                   "string": (with_string, [number]),
                   "team": (with_team, [variant != "round"])}[name]
     starts, doors = start_states(kind, world), all_doors(world.graph)

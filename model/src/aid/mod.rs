@@ -300,9 +300,8 @@ macro_rules! with_any_aid {
 }
 
 /// The fixed markers, then the aids that move, and then other senses. Each has finitely many states in a graph, so all of them can be
-/// searched; [a string as long as it takes](LaidString::of_any_length) has not, and is not among them. Nor is
-/// [`DirectionalAndMovable`], which distinguishes what a directional marker distinguishes.
-pub const AIDS: [AidKind; 25] = [
+/// searched; [a string as long as it takes](LaidString::of_any_length) has not, and is not among them.
+pub const AIDS: [AidKind; 26] = [
     AidKind::Fixed(MarkerKind::NoMarker),
     AidKind::Fixed(MarkerKind::Undirected),
     AidKind::Fixed(MarkerKind::Directional),
@@ -318,6 +317,7 @@ pub const AIDS: [AidKind; 25] = [
     AidKind::Markers(MovableMarkers::distinct(3)),
     AidKind::Markers(MovableMarkers::distinct(4)),
     AidKind::Pointer(MovablePointer),
+    AidKind::DirectionalAndMovable(DirectionalAndMovable),
     AidKind::String(LaidString::of(1)),
     AidKind::String(LaidString::of(2)),
     AidKind::String(LaidString::of(3)),

@@ -76,17 +76,14 @@ impl MappingAlgorithm {
     /// All of them: those that map with the directional marker, and one for each aid that moves.
     pub fn all() -> impl Iterator<Item = Self> {
         let string = AidKind::String(LaidString::of_any_length());
-        let moving = AIDS
-            .into_iter()
-            .chain([string, AidKind::DirectionalAndMovable(DirectionalAndMovable)])
-            .filter_map(|aid| match aid {
-                AidKind::Fixed(_) | AidKind::Binoculars(_) => None,
-                AidKind::Markers(markers) => Some(Self::MovableMarkers(markers)),
-                AidKind::Pointer(pointer) => Some(Self::MovablePointer(pointer)),
-                AidKind::DirectionalAndMovable(_) => Some(Self::DirectionalAndMovable),
-                AidKind::String(string) => Some(Self::String(string)),
-                AidKind::Team(team) => Some(Self::Team(team)),
-            });
+        let moving = AIDS.into_iter().chain([string]).filter_map(|aid| match aid {
+            AidKind::Fixed(_) | AidKind::Binoculars(_) => None,
+            AidKind::Markers(markers) => Some(Self::MovableMarkers(markers)),
+            AidKind::Pointer(pointer) => Some(Self::MovablePointer(pointer)),
+            AidKind::DirectionalAndMovable(_) => Some(Self::DirectionalAndMovable),
+            AidKind::String(string) => Some(Self::String(string)),
+            AidKind::Team(team) => Some(Self::Team(team)),
+        });
         Self::with_fixed_marker().chain(moving)
     }
 

@@ -335,6 +335,26 @@ const AIDS = {
     carried: "the marker",
     held: ([along]) => (along === null ? "you carry the marker" : ""),
   }),
+  "movable+directional": aid({
+    thing: "the markers",
+    elsewhere: "The markers that lie here lie elsewhere on your map",
+    signs: "@ is the place of the movable marker, +marker that it is carried.",
+    placed: (graph, facing) => [facing, around(graph, facing)[0]],
+    sightings(graph, [along, place], pose) {
+      const pointer = isAt(graph, along, pose) ? [`directional ${pointing(graph, along, pose)}`] : [];
+      return [[...pointer, ...(isAt(graph, place, pose) ? ["movable marker"] : [])].join(", ") || NOTHING];
+    },
+    starts: () => [],
+    parts: (graph, [along, place]) => [{ dart: along, drawn: "pointing" }, ...(place === null ? [] : LYING.parts(graph, [place]))],
+    words: ([along, place], names) =>
+      `The directional marker lies at ${names.vertex(along)}, along the small number ${names.index(along)}. ` +
+      (place === null ? "The robot carries the movable marker." : `The movable marker lies at ${names.vertex(place)}.`),
+    text: ([, place], { vertex }) => (place === null ? "+marker" : `@${vertex(place)}`),
+    actions: (graph, [, place], pose) => (place === null ? [DROP] : isAt(graph, place, pose) ? [PICK_UP] : []),
+    act: (graph, [along], pose, action) => [along, action === DROP ? around(graph, pose)[0] : null],
+    carried: "the movable marker",
+    held: ([, place]) => (place === null ? "you carry the movable marker" : ""),
+  }),
   "string-1": string(1),
   "string-2": string(2),
   "string-3": string(3),
@@ -365,6 +385,7 @@ function factsOf({ degree, sighting }) {
     ...[...Array(count).keys()].map((number) => fact(`marker ${number}`)),
     ...looks.map((look) => fact(look)),
     ...found(/marker along door (\d+)/g).map(([, door]) => fact("pointing", door)),
+    ...found(/movable marker$/g).map(() => fact("marker 0")),
     ...strings.map((door) => fact("string", door)),
     ...found(/from the hand through door (\d+)/g).map(([, door]) => fact("hand", door)),
     ...found(/fixed end|free end/g).map(([end]) => fact(end)),
