@@ -144,7 +144,7 @@ each_definition_matters! {
         "if allowed_action allowed patience K a then guided_by"
         => "if allowed_action allowed patience K a || true then guided_by";
     the_checker_follows_two_passages_only_from_one_dart, "Checker.v":
-        "if name_of k x == name_of k y then inl" => "if true then inl";
+        "if name_of k x == name_of k y then existing" => "if true then existing";
     the_checker_turns_the_visits_that_it_joins, "Checker.v":
         "N.add at_to (N.sub (degree_at s) at_from)" => "N.add at_to at_from";
     a_step_alone_is_no_contradiction, "Checker.v":
@@ -165,6 +165,8 @@ each_definition_matters! {
         => "(fun i => is_pair t (turn_in T p i) (turn_in U q i))";
     the_checker_compares_every_pose_of_the_second_world, "Checker.v":
         "first_not (has_entry compared) (dart_list U)" => "first_not (has_entry compared) [::]";
+    the_checker_follows_every_door_that_is_not_known, "Checker.v":
+        "else if last then [:: d]" => "else if true then [:: d]";
 }
 
 #[test]
