@@ -18,7 +18,7 @@ SIDE = 800
 def main() -> None:
     folder = Path(sys.argv[1])
     cv2.setNumThreads(1)
-    image = cv2.imread(str(folder / "picture.png"))
+    image = cv2.imread(str(folder / "image.png"))
     labels = cv2.imread(str(folder / "labels.png"))
     u, v = (
         numpy.fromfile(folder / name, dtype="<f4").reshape(SIDE, SIDE) for name in ("u.f32", "v.f32")

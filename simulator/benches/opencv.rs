@@ -3,10 +3,10 @@
 //! 800.
 //!
 //! `cargo bench -p toposlam-simulator --bench opencv` needs Python with
-//! `opencv-python-headless==4.12.*`. `PYTHON` names the interpreter. Without them it prints a
-//! message and measures nothing.
+//! `opencv-python-headless==4.12.*`. `PYTHON` names the interpreter. Where they are not installed it
+//! prints a message and measures nothing.
 
-#![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a benchmark may panic")]
 
 use std::{
     hint::black_box,
@@ -119,20 +119,23 @@ struct OpenCv {
 }
 
 impl OpenCv {
+    /// `None` if there is no such Python or no OpenCV. Panics if the program fails.
     fn start(folder: &Path) -> Option<Self> {
         let python = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
+        let imported = Command::new(&python).args(["-c", "import cv2"]).output();
+        imported.ok().filter(|imported| imported.status.success())?;
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/opencv.py");
         let mut child = Command::new(python)
             .args([script.as_path(), folder])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
-            .stderr(Stdio::null())
             .spawn()
-            .ok()?;
-        let mut answers = BufReader::new(child.stdout.take()?);
+            .unwrap();
+        let mut answers = BufReader::new(child.stdout.take().unwrap());
         let mut ready = String::new();
-        answers.read_line(&mut ready).ok()?;
-        let version = format!("OpenCV {}", ready.strip_prefix("ready ")?.trim());
+        answers.read_line(&mut ready).unwrap();
+        let version = ready.strip_prefix("ready ").expect("the program says that it is ready");
+        let version = format!("OpenCV {}", version.trim());
         Some(Self { child, answers, version })
     }
 
