@@ -162,13 +162,15 @@ fn the_running_folding_explorer_takes_allowed_actions_in_every_small_start() {
 #[ignore = "it needs Coq: `.ci/run --all`"]
 fn strict_tests_are_those_of_the_proved_explorer() {
     let mut random = Random::new(3);
-    let larger = iter::repeat_with(|| random.start_of::<10, 60>()).take(200);
-    let all: Vec<_> = starts(Class::Multigraph, 1..=4).into_iter().chain(larger).collect();
+    let larger: Vec<_> = iter::repeat_with(|| random.start_of::<10, 40>()).take(40).collect();
+    // The extracted program counts in unary numbers, and takes up to a minute for one of 60 edges.
+    let largest = [random.start_of::<60, 60>()];
+    let all = [starts(Class::Multigraph, 1..=4), larger, largest.into()].concat();
     let runs: Vec<_> = all.into_iter().map(Run::strict).collect();
     assert_same(&compiled().copy("strict-folding"), &cases(&runs));
     let is_test = |given: &&Given| matches!(given, Given::Tested(..));
     let tests: usize = runs.iter().map(|run| run.given.iter().filter(is_test).count()).sum();
-    assert!(tests > 2_000, "{tests}");
+    assert!(tests > 1_500, "{tests}");
 }
 
 /// What an explorer with a flaw does, if the run has a place for it.
