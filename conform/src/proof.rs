@@ -8,7 +8,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     folding::SmallestWorld,
     marker::MarkerKind,
-    proof::{Claim, NotProved, Proof, Seen, Walk, unexplained},
+    proof::{Claim, NotProved, PerceivedWalk, Proof, Seen, unexplained},
     visits::{VisitAlternative, VisitSet, choice_in_world},
 };
 
@@ -34,7 +34,7 @@ impl CheckedLog {
         if judgement.lost.is_some() || !trace.relocations().is_empty() {
             return Err(NotProved::Lost);
         }
-        let walk = Walk::new(trace.percepts(), trace.doors())?;
+        let walk = PerceivedWalk::new(trace.percepts(), trace.doors())?;
         if let Some(known) = &self.config.world {
             return Ok(in_known_world(known, marker, walk));
         }
@@ -92,7 +92,7 @@ fn of_visits<'w>(known: &'w KnownWorld, marker: MarkerKind, visits: &[VisitSet])
 }
 
 /// That a walk is one in a known world, or a proof for each place of the marker that it is not.
-fn in_known_world(known: &KnownWorld, marker: MarkerKind, walk: Walk) -> Vec<Proof<'_>> {
+fn in_known_world(known: &KnownWorld, marker: MarkerKind, walk: PerceivedWalk) -> Vec<Proof<'_>> {
     let graph = &known.graph;
     let starts = starts_of(known);
     let proof = |facing, walk, claim| {
@@ -120,7 +120,7 @@ fn in_known_world(known: &KnownWorld, marker: MarkerKind, walk: Walk) -> Vec<Pro
 fn in_found_world(
     (graph, place): (&EmbeddedGraph, Option<Dart>),
     marker: MarkerKind,
-    walk: Walk,
+    walk: PerceivedWalk,
 ) -> Result<Proof<'_>, NotProved> {
     let from = Dart(0);
     let gives = |&facing: &Dart| walk.first_difference((graph, facing), marker, from).is_none();

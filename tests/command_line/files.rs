@@ -10,13 +10,16 @@ const OUTPUTS: &str = "
 check --failed: w.toml check --explorer cat --from IN --failed OUT
 check --worst: w.toml check --from IN --worst OUT
 check --report: w.xml check --from IN --report OUT | s.xml check --add IN --report OUT | w.sarif check --from IN --report OUT
+explore --proof: w.proof explore IN --proof OUT
 explore --map: w.toml explore IN --map OUT | w.svg explore IN --map OUT
+compare --proof: w.proof compare IN WORLD --marker none --proof OUT
 compare --html: w.html compare IN WORLD --marker none --html OUT | w.html compare WORLD IN --marker none --html OUT
 draw --out: w.svg draw IN --out OUT | w.png draw IN --pose start --out OUT | c.png draw WORLD --pose start --calibration IN --out OUT
 draw --labels: w.png draw IN --pose start --out NEW.png --labels OUT
 simulate --log: w.mcap simulate IN --by-scene --log OUT | c.mcap simulate WORLD --calibration IN --log OUT | c.mcap simulate WORLD --colours IN --log OUT
 simulate --svg: w.svg simulate IN --by-scene --svg OUT
 simulate --html: w.html simulate IN --by-scene --html OUT
+simulate --proof: w.proof simulate IN --by-scene --proof OUT
 simulate --map: w.toml simulate IN --by-scene --map OUT
 camera calibrate --out: c.toml camera calibrate IMAGE --initial IN --out OUT
 camera calibrate --picture: i.png camera calibrate IN --picture OUT | i.png camera calibrate IMAGE IN --picture OUT
@@ -26,6 +29,7 @@ info --write-topics: l.toml info IN --write-topics OUT
 conform --html: l.html conform IN --html OUT | w.html conform LOG --world IN --html OUT | m.html conform LOG --topics IN --html OUT
 conform --minimise: l.mcap conform IN --minimise OUT | w.mcap conform LOG --world IN --minimise OUT
 conform --map: l.toml conform IN --map OUT | l.toml conform --rerun IN --map OUT | m.toml conform --rerun LOG --topics IN --map OUT
+conform --proof: l.proof conform IN --proof OUT | w.proof conform LOG --world IN --proof OUT
 conform --picture: q.svg conform LOG --quirks IN --picture OUT
 conform --report: l.xml conform IN --report OUT | l.sarif conform IN --report OUT
 ";
@@ -33,11 +37,11 @@ conform --report: l.xml conform IN --report OUT | l.sarif conform IN --report OU
 /// All other options with files: those that write and read no file, those that write several files into a folder, and
 /// those that read.
 const OTHERS: [(&str, &str); 11] = [
-    ("check", "--journal --from --hosts"),
-    ("counterexample", "--out-dir --html --report --report --atlas --hosts"),
+    ("check", "--journal --from --hosts --proof"),
+    ("counterexample", "--out-dir --html --proof --report --atlas --hosts"),
     ("proofs", "--report"),
     ("simulate", "--calibration --colours --scanner"),
-    ("drive", "--log --map --calibration --colours --laser-params"),
+    ("drive", "--log --map --proof --calibration --colours --laser-params"),
     ("draw", "--calibration"),
     ("camera calibrate", "--initial"),
     ("camera train", "--images --labels --calibration"),

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{Contradiction, FoldedWalk, Step, Walk, WalkEnd, fold_walk};
+use super::{FoldedWalk, PerceivedWalk, UnionStep, WalkContradiction, WalkEnd, fold_walk};
 use crate::{
     aid::AidAction,
     ambiguity::{self, Comparison},
@@ -18,9 +18,9 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Claim {
     /// The walk is one in the world from this pose, and in no other world.
-    Determined { from: Dart, steps: Vec<Step> },
+    Determined { from: Dart, steps: Vec<UnionStep> },
     /// The walk is one in no world.
-    Unexplained { steps: Vec<Step>, contradiction: Contradiction },
+    Unexplained { steps: Vec<UnionStep>, contradiction: WalkContradiction },
     /// The walk is one in the world from this pose.
     Conforms { from: Dart },
     /// The walk is one in the world from none of these poses; `None`: from no pose.
@@ -108,7 +108,11 @@ impl Claim {
     ///
     /// # Errors
     /// Returns an error if it does not.
-    pub fn determined(walk: &Walk, marker: MarkerKind, from: Dart) -> Result<Self, NotProved> {
+    pub fn determined(
+        walk: &PerceivedWalk,
+        marker: MarkerKind,
+        from: Dart,
+    ) -> Result<Self, NotProved> {
         let FoldedWalk { steps, end } = fold_walk(walk, marker);
         match end {
             WalkEnd::Complete if marker == Directional => Ok(Self::Determined { from, steps }),
@@ -142,7 +146,7 @@ impl Claim {
 
 /// Whether a walk with this marker has a contradiction in each world, as far as its folding shows: the claim, and the
 /// walk up to there.
-pub fn unexplained(walk: &Walk, marker: MarkerKind) -> Option<(Walk, Claim)> {
+pub fn unexplained(walk: &PerceivedWalk, marker: MarkerKind) -> Option<(PerceivedWalk, Claim)> {
     let FoldedWalk { steps, end } = fold_walk(walk, marker);
     match end {
         WalkEnd::Contradiction { visit, contradiction } => {

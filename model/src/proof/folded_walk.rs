@@ -14,7 +14,7 @@ use crate::{
 
 /// A reason why two darts of a walk are one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum UnionStep {
     /// At these visits the directional marker was seen.
     Mark([usize; 2]),
     /// These passages leave by one dart, so that they lead to one dart.
@@ -31,9 +31,9 @@ pub struct Passage {
 
 /// Why no world gives a walk. Visits are numbered from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Contradiction {
+pub enum WalkContradiction {
     /// This step makes two darts one that are two doors of a vertex, or at vertices with different degrees.
-    Step(Step),
+    Step(UnionStep),
     /// What was seen at these visits cannot be seen at one vertex, with their poses.
     Sightings([usize; 2]),
     /// The edge of this move would have one end only.
@@ -49,7 +49,7 @@ pub enum Contradiction {
 /// The steps of a walk, and what they show.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoldedWalk {
-    pub steps: Vec<Step>,
+    pub steps: Vec<UnionStep>,
     pub end: WalkEnd,
 }
 
@@ -60,11 +60,11 @@ pub enum WalkEnd {
     /// So many doors were never followed.
     Open(usize),
     /// The percepts up to a visit contradict each other.
-    Contradiction { visit: usize, contradiction: Contradiction },
+    Contradiction { visit: usize, contradiction: WalkContradiction },
 }
 
 /// Folds a walk, visit by visit, up to the first that contradicts those before it.
-pub fn fold_walk(walk: &Walk, marker: MarkerKind) -> FoldedWalk {
+pub fn fold_walk(walk: &PerceivedWalk, marker: MarkerKind) -> FoldedWalk {
     let mut folding = Folding {
         walk,
         marker,
@@ -83,7 +83,7 @@ pub fn fold_walk(walk: &Walk, marker: MarkerKind) -> FoldedWalk {
     let visit = walk.percepts().len().saturating_sub(1);
     let end = match folding.open_count() {
         0 if marker == Directional && folding.marked.is_none() => {
-            WalkEnd::Contradiction { visit, contradiction: Contradiction::Unmarked }
+            WalkEnd::Contradiction { visit, contradiction: WalkContradiction::Unmarked }
         }
         0 => WalkEnd::Complete,
         open => WalkEnd::Open(open),
@@ -92,7 +92,7 @@ pub fn fold_walk(walk: &Walk, marker: MarkerKind) -> FoldedWalk {
 }
 
 struct Folding<'w> {
-    walk: &'w Walk,
+    walk: &'w PerceivedWalk,
     marker: MarkerKind,
     /// For each visit, that of its class, and the index there of the dart by which the robot came in.
     labels: Vec<(usize, u32)>,
@@ -100,7 +100,7 @@ struct Folding<'w> {
     classes: Vec<Option<VertexClass>>,
     /// The first visit at which a directional marker was seen.
     marked: Option<usize>,
-    steps: Vec<Step>,
+    steps: Vec<UnionStep>,
     /// Pairs of passages that leave by one dart.
     pending: Vec<[Passage; 2]>,
 }
@@ -123,11 +123,11 @@ impl VertexClass {
     }
 
     /// Adds what was seen at a vertex. What was seen before must be the same.
-    fn add_views(&mut self, views: Views) -> Result<(), Contradiction> {
+    fn add_views(&mut self, views: Views) -> Result<(), WalkContradiction> {
         for (index, (visit, percept)) in views {
             let (earlier, seen) = *self.views.entry(index).or_insert((visit, percept));
             if seen != percept {
-                return Err(Contradiction::Sightings([earlier, visit]));
+                return Err(WalkContradiction::Sightings([earlier, visit]));
             }
         }
         Ok(())
@@ -136,16 +136,16 @@ impl VertexClass {
 
 impl Folding<'_> {
     /// The robot comes to its next visit.
-    fn arrive(&mut self, visit: usize) -> Result<(), Contradiction> {
+    fn arrive(&mut self, visit: usize) -> Result<(), WalkContradiction> {
         let passage = visit.checked_sub(1);
         if let Some(number) = passage
             && self.walk.doors()[number].0 >= self.walk.percepts()[number].degree
         {
-            return Err(Contradiction::Door(number));
+            return Err(WalkContradiction::Door(number));
         }
         let percept = self.walk.percepts()[visit];
         if !can_be_perceived(percept, self.marker) {
-            return Err(Contradiction::Percept(visit));
+            return Err(WalkContradiction::Percept(visit));
         }
         self.labels.push((visit, 0));
         self.classes.push(Some(VertexClass {
@@ -161,7 +161,7 @@ impl Folding<'_> {
         if let Sighting::Pointing(door) = percept.sighting {
             let first = *self.marked.get_or_insert(visit);
             if let Sighting::Pointing(first_door) = self.walk.percepts()[first].sighting {
-                self.unite(Step::Mark([first, visit]), (first, first_door), (visit, door))?;
+                self.unite(UnionStep::Mark([first, visit]), (first, first_door), (visit, door))?;
                 self.follow()?;
             }
         }
@@ -179,10 +179,10 @@ impl Folding<'_> {
     }
 
     /// Unites what is behind darts that are one.
-    fn follow(&mut self) -> Result<(), Contradiction> {
+    fn follow(&mut self) -> Result<(), WalkContradiction> {
         while let Some(passages) = self.pending.pop() {
             let [one, other] = passages.map(|passage| self.far(passage));
-            self.unite(Step::Beyond(passages), one, other)?;
+            self.unite(UnionStep::Beyond(passages), one, other)?;
         }
         Ok(())
     }
@@ -206,14 +206,14 @@ impl Folding<'_> {
     /// Two darts, each a door of a visit, are one.
     fn unite(
         &mut self,
-        step: Step,
+        step: UnionStep,
         one: (usize, Door),
         other: (usize, Door),
-    ) -> Result<(), Contradiction> {
+    ) -> Result<(), WalkContradiction> {
         let [(mut root, mut to), (mut child, mut from)] =
             [one, other].map(|dart| self.locate(dart));
         if root == child {
-            return if to == from { Ok(()) } else { Err(Contradiction::Step(step)) };
+            return if to == from { Ok(()) } else { Err(WalkContradiction::Step(step)) };
         }
         let size = |root: usize| self.classes[root].as_ref().map_or(0, |class| class.members.len());
         if size(root) < size(child) {
@@ -223,7 +223,7 @@ impl Folding<'_> {
         let Some(class) = &mut self.classes[root] else { return Ok(()) };
         let degree = class.degree();
         if smaller.degree() != degree {
-            return Err(Contradiction::Step(step));
+            return Err(WalkContradiction::Step(step));
         }
         self.steps.push(step);
         // The index in the larger class of dart 0 of the smaller one.
@@ -255,13 +255,13 @@ impl Folding<'_> {
     }
 
     /// No edge at a vertex has one end only.
-    fn check_edges(&self, root: usize) -> Result<(), Contradiction> {
+    fn check_edges(&self, root: usize) -> Result<(), WalkContradiction> {
         let Some(class) = &self.classes[root] else { return Ok(()) };
         let mut passages = (0..).zip(&class.passages);
         let one_end = passages.find_map(|(index, passage)| {
             passage.filter(|&passage| self.locate(self.far(passage)) == (root, index))
         });
-        one_end.map_or(Ok(()), |passage| Err(Contradiction::Edge(passage.number)))
+        one_end.map_or(Ok(()), |passage| Err(WalkContradiction::Edge(passage.number)))
     }
 
     fn open_count(&self) -> usize {

@@ -7,8 +7,8 @@ mod text;
 mod walk;
 
 pub use claim::{Claim, NotProved, WalkPair, unexplained};
-pub use folded_walk::{Contradiction, FoldedWalk, Passage, Step, WalkEnd, fold_walk};
-pub use walk::{Walk, WalkRecorder};
+pub use folded_walk::{FoldedWalk, Passage, UnionStep, WalkContradiction, WalkEnd, fold_walk};
+pub use walk::{PerceivedWalk, WalkRecorder};
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -30,7 +30,7 @@ pub struct Proof<'g> {
 /// What a robot saw on its way.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Seen {
-    Walk(Walk),
+    Walk(PerceivedWalk),
     Visits(Vec<VisitSet>),
 }
 
@@ -46,7 +46,11 @@ impl<'g> Proof<'g> {
     ///
     /// # Errors
     /// Returns an error if the walk does not determine its world.
-    pub fn of_map(map: &'g EmbeddedGraph, facing: Dart, walk: Walk) -> Result<Self, NotProved> {
+    pub fn of_map(
+        map: &'g EmbeddedGraph,
+        facing: Dart,
+        walk: PerceivedWalk,
+    ) -> Result<Self, NotProved> {
         if walk.first_difference((map, facing), Directional, facing).is_some() {
             return Err(NotProved::NotInMap);
         }

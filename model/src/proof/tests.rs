@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// How folded trails end: the number of open darts, or the visit that contradicts those before it.
-fn end_of_trail(walk: &Walk) -> Result<usize, usize> {
+fn end_of_trail(walk: &PerceivedWalk) -> Result<usize, usize> {
     let mut trail = FoldedTrail::new(walk.percepts()[0]).map_err(|_| 0_usize)?;
     for (move_, (&door, &percept)) in walk.doors().iter().zip(&walk.percepts()[1..]).enumerate() {
         trail.step(door, percept).map_err(|_| move_ + 1)?;
@@ -19,12 +19,12 @@ fn end_of_trail(walk: &Walk) -> Result<usize, usize> {
     Ok(trail.open_count())
 }
 
-fn end_of_steps(walk: &Walk, marker: MarkerKind) -> Result<usize, usize> {
+fn end_of_steps(walk: &PerceivedWalk, marker: MarkerKind) -> Result<usize, usize> {
     match fold_walk(walk, marker).end {
         WalkEnd::Complete => Ok(0),
         WalkEnd::Open(open) => Ok(open),
         // Folded trails leave it to their users.
-        WalkEnd::Contradiction { contradiction: Contradiction::Unmarked, .. } => Ok(0),
+        WalkEnd::Contradiction { contradiction: WalkContradiction::Unmarked, .. } => Ok(0),
         WalkEnd::Contradiction { visit, .. } => Err(visit),
     }
 }
@@ -33,7 +33,7 @@ fn end_of_steps(walk: &Walk, marker: MarkerKind) -> Result<usize, usize> {
 #[test]
 fn the_proof_of_two_parallel_edges_is_that_of_the_page() {
     let ring = EmbeddedGraph::cycle(2);
-    let walk = Walk::in_world((&ring, Dart(0)), Directional, Dart(0), &[Door(1), Door(1)]);
+    let walk = PerceivedWalk::in_world((&ring, Dart(0)), Directional, Dart(0), &[Door(1), Door(1)]);
     let proof = Proof::of_map(&ring, Dart(0), walk).unwrap().to_string();
     let page = include_str!("../../../docs/proofs-of-verdicts.md");
     assert!(page.contains(&format!("```text\n{proof}```")), "{proof}");
@@ -42,14 +42,14 @@ fn the_proof_of_two_parallel_edges_is_that_of_the_page() {
 #[test]
 fn a_walk_that_leaves_a_door_open_has_no_proof() {
     let ring = EmbeddedGraph::cycle(3);
-    let walk = Walk::in_world((&ring, Dart(0)), Directional, Dart(0), &[Door(1), Door(1)]);
+    let walk = PerceivedWalk::in_world((&ring, Dart(0)), Directional, Dart(0), &[Door(1), Door(1)]);
     assert_eq!(Proof::of_map(&ring, Dart(0), walk).unwrap_err(), NotProved::Open(2));
 }
 
 #[test]
 fn what_a_marker_never_shows_is_a_contradiction() {
     let seen = |sighting| {
-        let walk = Walk::new(&[Percept { degree: 2, sighting }], &[]).unwrap();
+        let walk = PerceivedWalk::new(&[Percept { degree: 2, sighting }], &[]).unwrap();
         move |marker| end_of_steps(&walk, marker).is_err()
     };
     let pointing = seen(Sighting::Pointing(Door(1)));
@@ -62,9 +62,9 @@ fn what_a_marker_never_shows_is_a_contradiction() {
 #[test]
 fn without_a_place_for_the_marker_no_world_gives_a_walk() {
     let alone = Percept { degree: 1, sighting: Sighting::Nothing };
-    let walk = Walk::new(&[alone, alone], &[Door(0)]).unwrap();
+    let walk = PerceivedWalk::new(&[alone, alone], &[Door(0)]).unwrap();
     let visit = 1;
-    let contradiction = Contradiction::Unmarked;
+    let contradiction = WalkContradiction::Unmarked;
     assert_eq!(fold_walk(&walk, Directional).end, WalkEnd::Contradiction { visit, contradiction });
     assert_eq!(fold_walk(&walk, NoMarker).end, WalkEnd::Complete);
 }
@@ -75,7 +75,7 @@ fn worlds_that_differ_have_a_walk_for_each_dart() {
     let Claim::NotIsomorphic { walks } = Claim::isomorphism(&ring, &larger) else { panic!() };
     assert_eq!(walks.len(), larger.dart_count());
     for WalkPair { from: [one, other], doors } in walks {
-        let walk = |graph, from| Walk::in_world((graph, from), Directional, from, &doors);
+        let walk = |graph, from| PerceivedWalk::in_world((graph, from), Directional, from, &doors);
         assert_ne!(walk(&ring, one).percepts().last(), walk(&larger, other).percepts().last());
     }
 }
@@ -110,7 +110,7 @@ proptest! {
         lies in any::<bool>(),
     ) {
         let marker = if is_marked { Directional } else { NoMarker };
-        let mut walk = Walk::in_world((&graph, facing), marker, from, &doors);
+        let mut walk = PerceivedWalk::in_world((&graph, facing), marker, from, &doors);
         if lies {
             let mut percepts = walk.percepts().to_vec();
             let (visit, changes_degree, number) = lie;
@@ -121,7 +121,7 @@ proptest! {
                 let door = Door(u32::from(number) % (wrong.degree + 1));
                 wrong.sighting = if door.0 == 0 { Sighting::Nothing } else { Sighting::Pointing(door) };
             }
-            walk = Walk::new(&percepts, walk.doors()).unwrap();
+            walk = PerceivedWalk::new(&percepts, walk.doors()).unwrap();
         }
         prop_assert_eq!(end_of_steps(&walk, marker), end_of_trail(&walk));
     }
@@ -130,7 +130,7 @@ proptest! {
     #[test]
     fn a_walk_in_a_world_has_no_contradiction((graph, facing, from, doors) in any_walk()) {
         for marker in MARKERS {
-            let walk = Walk::in_world((&graph, facing), marker, from, &doors);
+            let walk = PerceivedWalk::in_world((&graph, facing), marker, from, &doors);
             prop_assert!(end_of_steps(&walk, marker).is_ok(), "{}", marker.name());
         }
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::{Claim, Contradiction, Passage, Proof, Seen, Step, Walk, WalkPair};
+use super::{Claim, Passage, PerceivedWalk, Proof, Seen, UnionStep, WalkContradiction, WalkPair};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::{Door, MarkerSet, Sighting},
@@ -69,7 +69,7 @@ fn write_darts(
     writeln!(out)
 }
 
-impl Display for Walk {
+impl Display for PerceivedWalk {
     fn fmt(&self, out: &mut Formatter) -> fmt::Result {
         writeln!(out, "walk")?;
         let mut doors = self.doors().iter();
@@ -152,11 +152,11 @@ impl Display for Claim {
     }
 }
 
-fn write_steps(out: &mut Formatter, steps: &[Step]) -> fmt::Result {
+fn write_steps(out: &mut Formatter, steps: &[UnionStep]) -> fmt::Result {
     steps.iter().try_for_each(|step| writeln!(out, "{step}"))
 }
 
-impl Display for Step {
+impl Display for UnionStep {
     fn fmt(&self, out: &mut Formatter) -> fmt::Result {
         match self {
             Self::Mark(visits) => write!(out, "mark {} {}", visits[0], visits[1]),
@@ -171,7 +171,7 @@ impl Display for Passage {
     }
 }
 
-impl Display for Contradiction {
+impl Display for WalkContradiction {
     fn fmt(&self, out: &mut Formatter) -> fmt::Result {
         match self {
             Self::Step(step) => write!(out, "{step}"),

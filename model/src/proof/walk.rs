@@ -11,12 +11,12 @@ use crate::{
 
 /// What a robot perceived, and the doors that it took: one percept more than doors.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Walk {
+pub struct PerceivedWalk {
     percepts: Vec<Percept>,
     doors: Vec<Door>,
 }
 
-impl Walk {
+impl PerceivedWalk {
     /// Percepts and doors in turn, up to the last percept. A door after it is left out.
     ///
     /// # Errors
@@ -125,9 +125,9 @@ impl WalkRecorder {
     ///
     /// # Errors
     /// Returns an error if the run is not one walk with a fixed marker.
-    pub fn walk(&self) -> Result<Walk, NotProved> {
+    pub fn walk(&self) -> Result<PerceivedWalk, NotProved> {
         match &self.broken {
-            None => Walk::new(&self.percepts, &self.doors),
+            None => PerceivedWalk::new(&self.percepts, &self.doors),
             Some(why) => Err(why.clone()),
         }
     }

@@ -10,7 +10,7 @@ use toposlam_model::{
     isomorphism::Candidate,
     mapping::FACING,
     marker::Directional,
-    proof::{Proof, Walk},
+    proof::{PerceivedWalk, Proof},
 };
 
 use super::ExploreArguments;
@@ -71,7 +71,7 @@ impl ExploreArguments {
         };
         let walk = || {
             let doors: Vec<_> = run.actions.iter().filter_map(|action| action.door()).collect();
-            Walk::in_world((graph, facing), Directional, facing, &doors)
+            PerceivedWalk::in_world((graph, facing), Directional, facing, &doors)
         };
         let walk = (self.proof.path().is_some() && run.result.is_ok()).then(walk);
         let mut run = ReportedRun::new(run, stderr);
