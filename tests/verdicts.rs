@@ -21,7 +21,10 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
-use crate::{output::folder, program, repository};
+use crate::{
+    output::{folder, names_in},
+    program, repository,
+};
 
 /// The checker, built once; or why there is none.
 static CHECKER: LazyLock<Result<PathBuf, String>> = LazyLock::new(|| {
@@ -36,8 +39,8 @@ static CHECKER: LazyLock<Result<PathBuf, String>> = LazyLock::new(|| {
     }
 });
 
-/// The two readers of proofs, each with its name.
-struct Readers([(&'static str, Box<dyn Fn() -> Command>); 2]);
+/// The two readers of proofs, each with its name and the words with which it is called.
+struct Readers([(&'static str, Vec<PathBuf>); 2]);
 
 impl Readers {
     /// `None`, with a message, if something is missing.
@@ -48,14 +51,11 @@ impl Readers {
             Err(missing) => missing.trim_end(),
             Ok(_) if python().is_err() => "there is no python3",
             Ok(checker) => {
-                let second = || {
-                    let mut python = Command::new("python3");
-                    python.arg("-B").arg(repository("tests/oracle/verdict_proofs.py"));
-                    python
-                };
+                let program = repository("tests/oracle/verdict_proofs.py");
+                let second = vec!["python3".into(), "-B".into(), program];
                 return Some(Self([
-                    ("the checker", Box::new(move || Command::new(checker))),
-                    ("the second reader", Box::new(second)),
+                    ("the checker", vec![checker.clone()]),
+                    ("the second reader", second),
                 ]));
             }
         };
@@ -69,7 +69,7 @@ impl Readers {
     fn prove(&self, folder: &Path, files: &[String]) {
         assert!(!files.is_empty());
         for (name, reader) in &self.0 {
-            let said = reader().current_dir(folder).args(files).output().unwrap();
+            let said = call(reader).current_dir(folder).args(files).output().unwrap();
             let text = String::from_utf8_lossy(&said.stdout);
             let wrong = text.lines().find(|line| line.contains("not proved"));
             assert!(said.status.success(), "{name}: {wrong:?}");
@@ -80,7 +80,8 @@ impl Readers {
     #[track_caller]
     fn accepted(&self, folder: &Path, files: &[String]) -> Vec<String> {
         let [checker, second] = self.0.each_ref().map(|(_, reader)| {
-            let said = reader().current_dir(folder).arg("--verdicts").args(files).output().unwrap();
+            let said =
+                call(reader).current_dir(folder).arg("--verdicts").args(files).output().unwrap();
             String::from_utf8(said.stdout).unwrap()
         });
         let difference = checker.lines().zip(second.lines()).find(|(one, other)| one != other);
@@ -92,6 +93,19 @@ impl Readers {
             .map(str::to_owned)
             .collect()
     }
+}
+
+/// Calls a reader.
+fn call(words: &[PathBuf]) -> Command {
+    let mut command = Command::new(&words[0]);
+    command.args(&words[1..]);
+    command
+}
+
+/// The names of the files in a folder with this ending.
+fn files_in(folder: &Path, ending: &str) -> Vec<String> {
+    let has_ending = |name: &String| Path::new(name).extension().is_some_and(|it| it == ending);
+    names_in(folder).into_iter().filter(has_ending).collect()
 }
 
 /// Runs commands that write proofs in a folder, and checks these.
@@ -113,17 +127,6 @@ fn run(folder: &Path, line: &str) {
     assert!([0, 1, 3].contains(&code), "{line}: {}", String::from_utf8_lossy(&said.stderr));
 }
 
-/// The worlds of the repository.
-fn worlds() -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(repository("worlds"))
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .filter(|name| name.ends_with(".toml"))
-        .collect();
-    names.sort();
-    names
-}
-
 /// 8,954 starts (A000698).
 #[test]
 fn the_map_of_every_small_start_is_proved() {
@@ -143,7 +146,7 @@ fn the_map_of_each_world_of_the_repository_is_proved() {
     let Some(readers) = Readers::new() else { return };
     let folder = folder("proofs_of_maps");
     let mut files = Vec::new();
-    for world in worlds() {
+    for world in files_in(&repository("worlds"), "toml") {
         for how in ["--algorithm algorithm1", "--algorithm folding --audit"] {
             let file = format!("{}.proof", files.len());
             run(&folder, &format!("explore worlds/{world} {how} --proof {file}"));
@@ -294,18 +297,10 @@ fn verdicts_about_logs_are_proved() {
 fn both_readers_agree_on_the_examples() {
     let Some(readers) = Readers::new() else { return };
     let examples = repository("proofs/coq/checker/examples");
-    let files = |folder: &str| {
-        let mut files: Vec<String> = fs::read_dir(examples.join(folder))
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .filter(|name| name.ends_with(".proof"))
-            .map(|name| Path::new(folder).join(name).to_str().unwrap().to_owned())
-            .collect();
-        files.sort();
-        files
-    };
-    readers.prove(&examples, &files(""));
-    assert_eq!(readers.accepted(&examples, &files("refused")), Vec::<String>::new());
+    readers.prove(&examples, &files_in(&examples, "proof"));
+    let refused = examples.join("refused");
+    let accepted = readers.accepted(&refused, &files_in(&refused, "proof"));
+    assert_eq!(accepted, Vec::<String>::new());
 }
 
 /// Changes one thing in the lines of a proof.
@@ -320,7 +315,7 @@ fn mutated(proof: &[&str], other: &[&str], random: &mut TestRng) -> String {
             let with = below(lines.len());
             lines.swap(at, with);
         }
-        3 => lines[at] = other[below(other.len())].to_owned(),
+        3 => other[below(other.len())].clone_into(&mut lines[at]),
         // One word of the line, for another of the proof or for another number.
         kind => {
             let all: Vec<String> =
@@ -332,7 +327,7 @@ fn mutated(proof: &[&str], other: &[&str], random: &mut TestRng) -> String {
             lines[at] = words.join(" ");
         }
     }
-    lines.iter().map(|line| format!("{line}\n")).collect()
+    lines.join("\n") + "\n"
 }
 
 /// 10,000 proofs that were changed in one thing, of which some are still proofs.

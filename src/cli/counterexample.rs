@@ -197,12 +197,7 @@ impl CounterexampleArguments {
             if let Some(path) = self.html.as_ref().filter(|_| is_first) {
                 found.write_page(path, *marker)?;
             }
-            if self.proof.path().is_some() {
-                match found.proofs(*marker) {
-                    Ok(text) => proofs.push_str(&text),
-                    Err(why) => self.proof.remark(&why),
-                }
-            }
+            proofs += &self.proofs(&found, *marker);
             let pairs = found.pairs().len();
             let file = folder.zip(found.worlds.first());
             let file = file.map(|(folder, world)| folder.join(format!("{}.toml", world.name)));
@@ -231,14 +226,29 @@ impl CounterexampleArguments {
             cluster.close();
         }
         if is_first {
-            if proofs.is_empty() {
-                self.proof.remark(&"there is no pair");
-            } else {
-                self.proof.write_text(&proofs)?;
-            }
+            self.write_proofs(&proofs)?;
             self.ci.write("counterexample", &cases, written.as_deref())?;
         }
         Ok(outcome)
+    }
+
+    /// The text of the proofs of some pairs, if it is wanted. If there is none, a remark says why.
+    fn proofs(&self, found: &WorldPairs, marker: AidKind) -> String {
+        let proofs = self.proof.path().map(|_| found.proofs(marker));
+        proofs.map_or_else(String::new, |proofs| {
+            proofs.unwrap_or_else(|why| {
+                self.proof.remark(&why);
+                String::new()
+            })
+        })
+    }
+
+    fn write_proofs(&self, proofs: &str) -> Result<(), CliError> {
+        if proofs.is_empty() {
+            self.proof.remark(&"there is no pair");
+            return Ok(());
+        }
+        self.proof.write_text(proofs)
     }
 
     /// Connects to the other processes, if there are others.

@@ -269,17 +269,14 @@ impl ExploreArguments {
             run.print(&mut out, if all { usize::MAX } else { STORY_VERTICES })?;
         }
         out.flush()?;
-        match run.map() {
-            Some((map, moves)) => {
-                self.write_map(&map, moves, run.carries)?;
-                self.proof.write(|| Ok(vec![Proof::of_map(&map.graph, FACING, walk.walk()?)?]))?;
+        if let Some((map, moves)) = run.map() {
+            self.write_map(&map, moves, run.carries)?;
+            self.proof.write(|| Ok(vec![Proof::of_map(&map.graph, FACING, walk.walk()?)?]))?;
+        } else {
+            if !self.map.is_empty() {
+                remark!("the map is not written: it is not complete");
             }
-            None => {
-                if !self.map.is_empty() {
-                    remark!("the map is not written: it is not complete");
-                }
-                self.proof.remark(&"the map is not complete");
-            }
+            self.proof.remark(&"the map is not complete");
         }
         Ok(run.outcome())
     }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Walk;
+use super::PerceivedWalk;
 use crate::{
     marker::{
         DirectedEdge, Directional, MarkerKind, TwoDistinct, TwoIdentical, Undirected,

@@ -21,10 +21,10 @@ fn end_of_trail(walk: &PerceivedWalk) -> Result<usize, usize> {
 
 fn end_of_steps(walk: &PerceivedWalk, marker: MarkerKind) -> Result<usize, usize> {
     match fold_walk(walk, marker).end {
-        WalkEnd::Complete => Ok(0),
+        // Folded trails leave it to their users that the marker was not seen.
+        WalkEnd::Complete
+        | WalkEnd::Contradiction { contradiction: WalkContradiction::Unmarked, .. } => Ok(0),
         WalkEnd::Open(open) => Ok(open),
-        // Folded trails leave it to their users.
-        WalkEnd::Contradiction { contradiction: WalkContradiction::Unmarked, .. } => Ok(0),
         WalkEnd::Contradiction { visit, .. } => Err(visit),
     }
 }

@@ -126,10 +126,10 @@ impl Display for Claim {
                 }
             }
             Self::Diverges { from: Some(from) } | Self::Misfits { from: Some(from) } => {
-                write_darts(out, "from", from.iter().copied())?
+                write_darts(out, "from", from.iter().copied())?;
             }
             Self::Diverges { from: None } | Self::Misfits { from: None } => {
-                writeln!(out, "from any")?
+                writeln!(out, "from any")?;
             }
             Self::Indistinguishable { pairs } => {
                 for pair in pairs {

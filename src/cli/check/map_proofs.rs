@@ -1,7 +1,7 @@
 //! `--proof FILE`: for each start the proof that its run determines its map, one after the other.
 
 use std::{
-    io::{BufWriter, Write},
+    io::{self, BufWriter, Write},
     ops::ControlFlow,
     path::Path,
 };
@@ -58,7 +58,7 @@ impl<'p> MapProofs<'p> {
                 let text = proof.map_err(|error| CliError::at("--proof", error))?.to_string();
                 digest.update(&text);
                 watch.part_done(1);
-                self.file.write_all(text.as_bytes()).map_err(|error| self.unwritten(error))
+                self.file.write_all(text.as_bytes()).map_err(|error| self.unwritten(&error))
             });
             if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
@@ -72,7 +72,7 @@ impl<'p> MapProofs<'p> {
         self.file.into_inner().map_err(|error| unwritten(error.into_error()))?.complete()
     }
 
-    fn unwritten(&self, error: std::io::Error) -> CliError {
+    fn unwritten(&self, error: &io::Error) -> CliError {
         CliError::in_file(self.path, format!("cannot be written: {error}"))
     }
 }
