@@ -17,8 +17,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import tomllib
-
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve() / "symbolic"
@@ -81,7 +79,7 @@ def check(program, names, seconds):
         result = engine.explore(number, seconds)
         verdict, why = judge(result, covers)
         paths = in_words(result.paths)
-        print(f"{name}: {result.count} paths ({paths}), {result.seconds:.1f} s: {why}", flush=True)
+        print(f"{name}: {result.count} paths ({paths}), {result.seconds:.0f} s: {why}", flush=True)
         panic = None
         if result.failing is not None:
             panic = replay(program, name, result.failing)
@@ -110,14 +108,16 @@ def plant(copy, faults):
 
 def planted(names, seconds):
     """Whether the fault of each harness is found."""
+    import tomllib  # since Python 3.11
+
     faults = tomllib.loads((HERE / "faults.toml").read_text())
     names = names or [name for name, _, _ in harnesses(build(ROOT, "sound"))]
     found = set()
     for copy in sorted({fault["round"] for fault in faults.values()}):
         ours = {name: fault for name, fault in faults.items() if fault["round"] == copy and name in names}
         if ours:
-            plant(TARGET / "copy", ours.values())
-            program = build(TARGET / "copy", f"planted-{copy}")
+            plant(TARGET / f"copy-{copy}", ours.values())
+            program = build(TARGET / f"copy-{copy}", f"planted-{copy}")
             for name, verdict, panic in check(program, ours.keys(), seconds):
                 if verdict == VIOLATED and panic is not None and ours[name]["panic"] in panic:
                     found.add(name)
@@ -131,7 +131,7 @@ def main():
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--list", action="store_true", help="print the names")
     parser.add_argument("--planted", action="store_true", help="in a copy with a fault for each harness")
-    parser.add_argument("--seconds", type=float, default=600, help="the bound for each harness")
+    parser.add_argument("--seconds", type=float, default=600, help="of processor time, for each harness")
     arguments = parser.parse_args()
     try:
         import engine  # noqa: F401

@@ -64,6 +64,7 @@ fn compile(library: &Path, output: &Path) -> Result<BTreeSet<String>, String> {
     run(rustc()
         .args(["--crate-name", "toposlam_proofs", "--crate-type", "lib", "-F", "unsafe_code"])
         .args(["--cfg", "kani", "--check-cfg", "cfg(kani, test)", "--extern", "kani"])
+        .args(["--check-cfg", "cfg(feature, values(\"symbolic\"))"])
         .arg("-L")
         .arg(stand_in)
         .args(externs)

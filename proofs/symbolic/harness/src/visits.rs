@@ -21,23 +21,18 @@ use crate::{Body, HOLDS, Harness};
 pub(crate) fn all() -> [Harness; 1] {
     [Harness {
         name: "a_set_of_percepts_is_judged_as_its_percepts",
-        input: "two percepts with doors, with any numbers of 32 bits, or one of them and no vertex, at the marker \
-                of a world with 2 edges",
+        input: "two sightings of the marker, with any numbers of 32 bits, or one and no vertex, at the marker of \
+                a world with 2 edges",
         body: Body::Lemma(judged_as_each),
         covers: &[HOLDS],
     }]
 }
 
-/// A percept with a door, with any numbers; or no vertex.
-fn alternative(kind: u8) -> Option<VisitAlternative> {
+/// A sighting of the marker and a door, with any numbers.
+fn alternative() -> VisitAlternative {
     let number = || draw::number::<8>(&mut Input);
-    let sighting = match kind {
-        0 => Sighting::Nothing,
-        1 => Sighting::Pointing(Door(number())),
-        _ => return None,
-    };
-    let percept = Percept { degree: number(), sighting };
-    Some(VisitAlternative { percept, door: Some(Door(number())) })
+    let percept = Percept { degree: number(), sighting: Sighting::Pointing(Door(number())) };
+    VisitAlternative { percept, door: Some(Door(number())) }
 }
 
 /// The states after a visit with two alternatives are those after the one and those after the other.
@@ -46,7 +41,8 @@ fn judged_as_each(_: &mut Input) -> CaseResult {
         return Err(Stop::Fails("this is a world"));
     };
     let start = State { pose: Dart(0), placed: Dart(0) };
-    let [one, other] = [alternative(any_below(2)), alternative(any_below(3))];
+    let one = Some(alternative());
+    let other = (any_below(2) == 1).then(alternative);
     let after = |alternatives: &[Option<VisitAlternative>]| {
         let visit = VisitSet::new(alternatives.iter().copied(), VisitWay::Back);
         states_after(&graph, &Directional, &[start], &[visit]).concat()
