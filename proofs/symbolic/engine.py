@@ -175,7 +175,8 @@ class Engine:
 def chosen(state):
     """The bytes of one input that takes this path."""
     choices = state.globals["choices"]
-    return list(state.solver.batch_eval(choices, 1)[0]) if choices else []
+    # An empty concatenation has no value.
+    return list(state.solver.eval(claripy.Concat(*choices), cast_to=bytes)) if choices else []
 
 
 # Functions that are replaced: each takes the state at its beginning, and returns the states after it.

@@ -1,7 +1,6 @@
 //! The harnesses for symbolic execution: lemmas, and decoders of any bytes.
 
 mod logs;
-mod visits;
 
 use toposlam_proofs::{CaseResult, Stop, input::Input, lemma::CompiledHarness, lemmas};
 
@@ -39,7 +38,7 @@ pub fn all() -> Vec<Harness> {
         body: Body::Lemma(body),
         covers: &[HOLDS],
     });
-    lemmas.chain(visits::all()).chain(logs::all()).collect()
+    lemmas.chain(logs::all()).collect()
 }
 
 /// Runs a harness.
