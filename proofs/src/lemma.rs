@@ -70,6 +70,18 @@ pub struct Kani {
     pub harness: &'static str,
 }
 
+/// The check of a lemma by symbolic execution of the compiled harness.
+#[cfg(feature = "symbolic")]
+#[derive(Clone, Copy, Debug)]
+pub struct CompiledHarness {
+    /// The name of the lemma.
+    pub name: &'static str,
+    /// The bound, in words.
+    pub bound: &'static str,
+    /// The lemma, for the driver whose choices are bytes of the input.
+    pub body: fn(&mut crate::input::Input) -> CaseResult,
+}
+
 /// The result of the exhaustive check of a lemma.
 #[derive(Clone, Debug)]
 pub struct LemmaCheck<'l> {
@@ -217,7 +229,8 @@ impl Lemma {
 /// Declares lemmas: each with its statement, its place in the paper, and its engines, which are the same
 /// generic function with different bounds. The macro expands to the list `LEMMAS` of the file; for each
 /// lemma to a module of its name with the tests `exhaustively` and `sampled`; and with `--cfg kani` to
-/// its harness `kani` there.
+/// its harness `kani` there. With the feature `symbolic` there is also the
+/// list `COMPILED`, for `symbolic/harness`.
 macro_rules! declare {
     ($(
         $name:ident {
@@ -226,6 +239,7 @@ macro_rules! declare {
         exhaustive $bound:tt, $cases:tt cases: $exhaustive:expr;
         $(sampled $sampled_bound:tt: $sampled:expr;)?
         $(kani $kani_bound:literal, unwind $unwind:tt: $kani:expr;)?
+        $(symbolic $symbolic_bound:literal: $symbolic:expr;)?
         }
     )*) => {
         /// The lemmas of this file.
@@ -251,6 +265,15 @@ macro_rules! declare {
                 harness: concat!(module_path!(), "::", stringify!($name), "::kani"),
             })?),
         }),*];
+
+        /// The lemmas of this file that are executed symbolically.
+        #[cfg(feature = "symbolic")]
+        pub(crate) const COMPILED: &[$crate::lemma::CompiledHarness] =
+            &[$($($crate::lemma::CompiledHarness {
+                name: stringify!($name),
+                bound: $symbolic_bound,
+                body: $symbolic,
+            },)?)*];
 
         $(
             #[cfg(any(test, kani))]

@@ -8,7 +8,7 @@
 //! Bottom up:
 //!
 //! * [`choose`]: the trait, and the results of a case;
-//! * [`odometer`], [`bytes`], [`replay`], and `symbolic` for Kani: the drivers;
+//! * [`odometer`], [`bytes`], [`replay`], `symbolic` for Kani, and `input` for symbolic execution: the drivers;
 //! * [`draw`]: starts, permutations and numbers, made from choices;
 //! * [`definition`]: the definitions of a graph, an isomorphism, a bisimulation;
 //! * [`hallways`]: a robot in hallways: what it sees there, correctly or not, and where it arrives;
@@ -27,6 +27,8 @@ pub mod definition;
 pub mod draw;
 pub mod fuzz;
 pub mod hallways;
+#[cfg(feature = "symbolic")]
+pub mod input;
 pub mod lemma;
 pub mod lemmas;
 pub mod marker_theorems;

@@ -24,6 +24,7 @@ declare! {
             doors::<_, 1>;
         sampled "any numbers of 32 bits": doors::<_, 8>;
         kani "any numbers of 32 bits", unwind 9: doors::<_, 8>;
+        symbolic "any numbers of 32 bits": doors::<_, 8>;
     }
     a_percept_can_be_turned_and_turned_back {
         "A percept that is turned to another entry dart and back again is unchanged, unless what \
@@ -35,6 +36,7 @@ declare! {
             turned::<_, 1>;
         sampled "any numbers of 32 bits": turned::<_, 8>;
         kani "any numbers of 32 bits", unwind 9: turned::<_, 8>;
+        symbolic "any numbers of 32 bits": turned::<_, 8>;
     }
     every_door_leads_to_a_dart {
         "Any number, taken as a door at any pose, leads to a dart of the same vertex: as many \
@@ -58,6 +60,7 @@ declare! {
             the_highest::<_, 2>;
         sampled "any numbers of 32 bits": the_highest::<_, 8>;
         kani "any numbers of 32 bits", unwind 9: the_highest::<_, 8>;
+        symbolic "any numbers of 32 bits": the_highest::<_, 8>;
     }
 }
 

@@ -21,7 +21,6 @@ declare! {
         exhaustive "every start with up to 3 edges, every relabelling", 53_524 cases:
             relabelled::<_, 1, 3, 6>;
         sampled "starts with up to 20 edges": relabelled::<_, 1, 20, 40>;
-        kani "every start with 2 edges, every relabelling", unwind 8: relabelled::<_, 2, 2, 4>;
     }
     starts_with_the_same_code_are_isomorphic {
         "Two starts have the same code exactly if there is a bijection of their darts that keeps \
@@ -57,15 +56,6 @@ fn copy_of<const DARTS: usize>(
     }
 }
 
-/// Compared word by word: Kani compares whole arrays byte by byte.
-fn same_words(one: &[u32], other: &[u32]) -> bool {
-    let mut word = 0;
-    while word < one.len() && word < other.len() && one[word] == other[word] {
-        word += 1;
-    }
-    word == one.len() && word == other.len()
-}
-
 // paper: world.unlabelled
 fn relabelled<C: Choose, const LEAST: usize, const MOST: usize, const DARTS: usize>(
     choose: &mut C,
@@ -73,7 +63,7 @@ fn relabelled<C: Choose, const LEAST: usize, const MOST: usize, const DARTS: usi
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (copy, facing) = copy_of::<DARTS>(choose, &graph)?;
     let (one, other) = (code(&graph, Dart(0)), code(&copy, facing));
-    claim("the codes are the same", same_words(one.words(), other.words()))?;
+    claim("the codes are the same", one.words() == other.words())?;
     claim("as it was drawn, it is as discovered", as_discovered(&graph, Dart(0)) == graph)?;
     claim("the copy becomes equal to it", as_discovered(&copy, facing) == graph)
 }

@@ -38,6 +38,7 @@ declare! {
         exhaustive "up to 10 bytes from 0 to 3", 1_398_101 cases: planar_code::<_, 10, 4>;
         sampled "any 60 bytes, read and not written": only_read::<_, 60, 0>;
         kani "any 5 bytes, read and not written", unwind 9: only_read::<_, 5, 0>;
+        symbolic "any 5 bytes, read and not written": only_read::<_, 5, 0>;
     }
     wide_planar_code_is_an_error_or_worlds {
         "Any bytes, read as planar_code with numbers of two bytes, give an error or simple worlds; \
@@ -55,6 +56,7 @@ declare! {
         exhaustive "up to 7 bytes: 0 to 5, and 255", 960_800 cases: edge_code::<_, 7, 6>;
         sampled "any 60 bytes, read and not written": only_read::<_, 60, 1>;
         kani "any 4 bytes, read and not written", unwind 9: only_read::<_, 4, 1>;
+        symbolic "any 4 bytes, read and not written": only_read::<_, 4, 1>;
     }
     neighbour_lists_are_an_error_or_a_world {
         "Lists of neighbours are accepted exactly if each name stands for one vertex, each \

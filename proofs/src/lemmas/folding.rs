@@ -47,8 +47,6 @@ declare! {
         paper "2.3",
         exhaustive WALKS, 170_130 cases: maps_into_the_world::<_, 1, 3, 4>;
         sampled LARGER_WALKS: maps_into_the_world::<_, 1, 12, 40>;
-        kani "every start with 2 edges, from every pose every walk of 2 moves", unwind 10:
-            maps_into_the_world::<_, 2, 2, 2>;
     }
     a_walk_determines_its_world_exactly_if_its_folded_trail_is_complete {
         "A complete folded trail is isomorphic to the world as a start, and the robot's pose in it \

@@ -20,6 +20,12 @@ pub fn all() -> impl Iterator<Item = &'static Lemma> {
     THEMES.iter().copied().flatten()
 }
 
+/// The lemmas that are executed symbolically.
+#[cfg(feature = "symbolic")]
+pub fn compiled() -> impl Iterator<Item = &'static crate::lemma::CompiledHarness> {
+    COMPILED.iter().copied().flatten()
+}
+
 /// The lemmas of each file.
 const THEMES: &[&[Lemma]] = &[
     embedded_graph::LEMMAS,
@@ -34,6 +40,22 @@ const THEMES: &[&[Lemma]] = &[
     figure_1::LEMMAS,
     certificates::LEMMAS,
     driving::LEMMAS,
+];
+
+#[cfg(feature = "symbolic")]
+const COMPILED: &[&[crate::lemma::CompiledHarness]] = &[
+    embedded_graph::COMPILED,
+    decoders::COMPILED,
+    arithmetic::COMPILED,
+    codes::COMPILED,
+    sighting::COMPILED,
+    retracing::COMPILED,
+    validation::COMPILED,
+    mapping::COMPILED,
+    folding::COMPILED,
+    figure_1::COMPILED,
+    certificates::COMPILED,
+    driving::COMPILED,
 ];
 
 #[cfg(test)]

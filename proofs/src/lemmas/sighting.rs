@@ -21,7 +21,6 @@ declare! {
         exhaustive "every start with up to 4 edges, any two poses", 48_016 cases:
             directional::<_, 1, 4>;
         sampled "starts with up to 40 edges": directional::<_, 1, 40>;
-        kani "every start with 2 edges, any two poses", unwind 8: directional::<_, 2, 2>;
     }
     a_turned_robot_perceives_the_turned_percept {
         "What a robot perceives that has come in by the dart behind a door is what it perceives in \
@@ -31,7 +30,6 @@ declare! {
         exhaustive "every start with up to 4 edges, every pose, every door", 28_788 cases:
             turned::<_, 1, 4>;
         sampled "starts with up to 40 edges": turned::<_, 1, 40>;
-        kani "every start with 2 edges, every pose, every door", unwind 8: turned::<_, 2, 2>;
     }
     an_undirected_sighting_does_not_determine_the_entry_dart {
         "There are worlds where an undirected marker gives the same sighting, at the marked \
@@ -39,8 +37,6 @@ declare! {
         paper "2.2",
         exhaustive "witnesses among the starts with up to 3 edges, any two poses", 1046 cases:
             undirected::<_, 1, 3>;
-        kani "witnesses among the starts with 2 edges, any two poses", unwind 8:
-            undirected::<_, 2, 2>;
     }
 }
 

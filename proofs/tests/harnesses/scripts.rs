@@ -8,29 +8,29 @@ use std::{
 
 use super::{here, scratch, table};
 
-const NAME: &str = "lemmas::retracing::the_way_back_retraces_the_path::kani";
+const NAME: &str = "lemmas::arithmetic::doors_stay_in_their_range::kani";
 
 /// What Kani says of a harness that it verified.
 const VERIFIED: &str = "\
 Kani Rust Verifier 0.68.0 (cargo plugin)
 CBMC 6.11.0
     Finished `dev` profile [unoptimized + debuginfo] target(s) in 9.45s
-Checking harness lemmas::retracing::the_way_back_retraces_the_path::kani...
+Checking harness lemmas::arithmetic::doors_stay_in_their_range::kani...
 CBMC version 6.11.0 (cbmc-6.11.0) 64-bit x86_64 linux
 Reading GOTO program from file
 Generating GOTO Program
 Runtime decision procedure: 0.0123s
 
 RESULTS:
-Check 1: lemmas::retracing::the_way_back_retraces_the_path::kani.assertion.1
+Check 1: lemmas::arithmetic::doors_stay_in_their_range::kani.assertion.1
 \t - Status: SUCCESS
 \t - Description: \"assertion failed: holds\"
-\t - Location: proofs/src/lemmas/retracing.rs:15:1 in function kani
+\t - Location: proofs/src/lemmas/arithmetic.rs:17:1 in function kani
 
-Check 2: lemmas::retracing::the_way_back_retraces_the_path::kani.cover.1
+Check 2: lemmas::arithmetic::doors_stay_in_their_range::kani.cover.1
 \t - Status: SATISFIED
 \t - Description: \"there is a case\"
-\t - Location: proofs/src/lemmas/retracing.rs:15:1 in function kani
+\t - Location: proofs/src/lemmas/arithmetic.rs:17:1 in function kani
 
 
 SUMMARY:
