@@ -11,15 +11,17 @@ fn run(arguments: &[&str]) -> Option<String> {
     let python = env::var_os("TOPOSLAM_SYMBOLIC_PYTHON").unwrap_or_else(|| "python3".into());
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("symbolic/run.py");
     let started = Command::new(&python).arg(program).args(arguments).output();
-    let Output { status, stdout, stderr } = match started {
-        Ok(output) => output,
-        Err(error) => panic!("{}: {error}", python.display()),
+    let skipped = |missing: &str| {
+        assert!(env::var_os("TOPOSLAM_SYMBOLIC").is_none_or(|set| set != "required"), "{missing}");
+        eprintln!("skipped: {missing}");
+        None
+    };
+    let Ok(Output { status, stdout, stderr }) = started else {
+        return skipped(&format!("there is no {}", python.display()));
     };
     let [out, errors] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     if status.code() == Some(2) && errors.starts_with("This needs angr") {
-        assert!(env::var_os("TOPOSLAM_SYMBOLIC").is_none_or(|set| set != "required"), "{errors}");
-        eprintln!("skipped: {errors}");
-        return None;
+        return skipped(&errors);
     }
     assert!(status.success(), "{out}{errors}");
     Some(out)
