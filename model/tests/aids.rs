@@ -317,8 +317,15 @@ fn markers_and_robots_without_a_front_do_not_tell_two_bouquets_apart_however_man
             told_apart.push(aid.name());
         }
     }
-    let with_a_front =
-        ["movable-directional", "string-1", "string-2", "string-3", "team-2", "team-3"];
+    let with_a_front = [
+        "movable-directional",
+        "movable+directional",
+        "string-1",
+        "string-2",
+        "string-3",
+        "team-2",
+        "team-3",
+    ];
     assert_eq!(told_apart, with_a_front);
 }
 

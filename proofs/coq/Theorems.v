@@ -999,7 +999,7 @@ Proof. exact: Tours.one_false_percept. Qed.
 (** * What is extracted *)
 
 (** A robot that does what is extracted from a program, with the default choices, takes the decisions of the robot
-    that obeys the program: one that only moves, and one with a movable marker. *)
+    that obeys the program: one that only moves, and one with a movable marker. Paper: beyond 2.3. *)
 Theorem extracted_obeys A :
   (forall (p : Program.program A) (past : seq percept),
      decides id 0 0 (deeds_of (@leaves A) p) past = obey p past) /\
@@ -1008,7 +1008,7 @@ Theorem extracted_obeys A :
      obey p past).
 Proof. by split; [apply: Deeds.decides_moves | apply: Deeds.decides_handles]. Qed.
 
-(** And whichever of the listed options it chooses by its number, it is an allowed one. *)
+(** And whichever of the listed options it chooses by its number, it is an allowed one. Paper: beyond 2.3. *)
 Theorem extracted_choices A (T : eqType) (xs : seq T) (default : T) (go : T -> Deeds.deeds A) (n i : nat) next :
   xs != [::] -> chooses (among xs) default go = Deeds.Chooses n next -> i < n ->
   exists2 x, allows (among xs) x & next (Some i) = go x.

@@ -114,7 +114,11 @@ fn a_run_with_each_aid_conforms_in_its_world_and_without_one() {
             let kept = kept.map(|at| events.events[at].clone()).collect();
             let kept = RunEvents { events: kept, ..events.clone() };
             let judged_again = judgement(&kept, &known(&graph, Some(facing), algorithm));
-            if matches!(algorithm.aid(), AidKind::Markers(_) | AidKind::Pointer(_)) {
+            let is_marker = matches!(
+                algorithm.aid(),
+                AidKind::Markers(_) | AidKind::Pointer(_) | AidKind::DirectionalAndMovable(_)
+            );
+            if is_marker {
                 assert_eq!(judged_again.unwrap().verdict(), ConformVerdict::Conforms);
             } else {
                 let error = judged_again.unwrap_err();
