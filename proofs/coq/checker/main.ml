@@ -320,7 +320,7 @@ let check_all files =
     | Error (line, what) -> Printf.printf "%s:%d: %s\n" name line what; (count, false)
   in
   let count, all = List.fold_left claims (0, true) files in
-  if all then Printf.printf "proved: %d claims\n" count;
+  if all then Printf.printf "proved: %d claim%s\n" count (if count = 1 then "" else "s");
   all
 
 let verdicts files =
