@@ -164,8 +164,13 @@ impl RunEvents {
         let is_none = aid == NoMarker.into();
         let is_undirected = [Undirected.into(), MOVABLE.into()].contains(&aid);
         // Of a marker it follows what is seen of it where it was dropped or picked up.
-        let is_marker =
-            matches!(aid, AidKind::Fixed(_) | AidKind::Markers(_) | AidKind::Pointer(_));
+        let is_marker = matches!(
+            aid,
+            AidKind::Fixed(_)
+                | AidKind::Markers(_)
+                | AidKind::Pointer(_)
+                | AidKind::DirectionalAndMovable(_)
+        );
         if let Some(event) = self.unseen_action().filter(|_| !is_marker) {
             return Err(SightingError::NotRecordedAfter { event: event + 1 });
         }
