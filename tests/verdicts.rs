@@ -1,7 +1,7 @@
 //! The proofs that commands write, given to the checker that is extracted from Coq, and to a second reader in Python.
 //!
-//! Needs Coq with MathComp, OCaml and Python. Without them a test prints a message and is skipped, unless
-//! `TOPOSLAM_COQ=required`.
+//! The checker needs Coq with MathComp and OCaml, the second reader Python. A test prints a message about what is missing,
+//! and is skipped if neither is there; with `TOPOSLAM_COQ=required` it then fails.
 
 use std::{
     env, fs,
@@ -39,59 +39,59 @@ static CHECKER: LazyLock<Result<PathBuf, String>> = LazyLock::new(|| {
     }
 });
 
-/// The two readers of proofs, each with its name and the words with which it is called.
-struct Readers([(&'static str, Vec<PathBuf>); 2]);
+/// The readers of proofs that can be called here, each with its name and the words with which it is called.
+struct Readers(Vec<(&'static str, Vec<PathBuf>)>);
 
 impl Readers {
-    /// `None`, with a message, if something is missing.
+    /// `None`, with a message, if there is none.
     fn new() -> Option<Self> {
         let required = env::var("TOPOSLAM_COQ").is_ok_and(|value| value == "required");
-        let python = || Command::new("python3").arg("--version").output();
-        let missing = match &*CHECKER {
-            Err(missing) => missing.trim_end(),
-            Ok(_) if python().is_err() => "there is no python3",
-            Ok(checker) => {
-                let program = repository("tests/oracle/verdict_proofs.py");
-                let second = vec!["python3".into(), "-B".into(), program];
-                return Some(Self([
-                    ("the checker", vec![checker.clone()]),
-                    ("the second reader", second),
-                ]));
-            }
+        let missing = |reader: &str, why: &str| {
+            assert!(!required, "{why}");
+            eprintln!("skipped, {reader} reads no proof: {}", why.trim_end());
         };
-        assert!(!required, "{missing}");
-        eprintln!("skipped, no proof of a verdict is checked: {missing}");
-        None
+        let mut readers = Vec::new();
+        match &*CHECKER {
+            Ok(checker) => readers.push(("the checker", vec![checker.clone()])),
+            Err(why) => missing("the checker", why),
+        }
+        if Command::new("python3").arg("--version").output().is_ok() {
+            let program = repository("tests/oracle/verdict_proofs.py");
+            readers.push(("the second reader", vec!["python3".into(), "-B".into(), program]));
+        } else {
+            missing("the second reader", "there is no python3");
+        }
+        (!readers.is_empty()).then_some(Self(readers))
     }
 
-    /// Both readers say that each claim in these files is proved.
+    /// All readers say that each claim in these files is proved.
     #[track_caller]
     fn prove(&self, folder: &Path, files: &[String]) {
         assert!(!files.is_empty());
         for (name, reader) in &self.0 {
             let said = call(reader).current_dir(folder).args(files).output().unwrap();
             let text = String::from_utf8_lossy(&said.stdout);
-            let wrong = text.lines().find(|line| line.contains("not proved"));
+            let wrong = text.lines().find(|line| line.contains(": not proved: "));
             assert!(said.status.success(), "{name}: {wrong:?}");
         }
     }
 
-    /// Which of these files both accept.
+    /// Which of these files all accept.
     #[track_caller]
     fn accepted(&self, folder: &Path, files: &[String]) -> Vec<String> {
-        let [checker, second] = self.0.each_ref().map(|(_, reader)| {
+        let mut verdicts = self.0.iter().map(|(_, reader)| {
             let said =
                 call(reader).current_dir(folder).arg("--verdicts").args(files).output().unwrap();
-            String::from_utf8(said.stdout).unwrap()
+            let text = String::from_utf8(said.stdout).unwrap();
+            text.lines().map(str::to_owned).collect::<Vec<_>>()
         });
-        let difference = checker.lines().zip(second.lines()).find(|(one, other)| one != other);
-        assert_eq!(difference, None);
-        assert_eq!((checker.lines().count(), second.lines().count()), (files.len(), files.len()));
-        checker
-            .lines()
-            .filter_map(|line| line.strip_prefix("accepted "))
-            .map(str::to_owned)
-            .collect()
+        let first = verdicts.next().unwrap();
+        assert_eq!(first.len(), files.len());
+        for other in verdicts {
+            let difference = first.iter().zip(&other).find(|(one, other)| one != other);
+            assert_eq!((difference, other.len()), (None, files.len()));
+        }
+        first.iter().filter_map(|line| line.strip_prefix("accepted ")).map(str::to_owned).collect()
     }
 }
 
@@ -294,7 +294,7 @@ fn verdicts_about_logs_are_proved() {
 
 /// Examples of every kind, and what is wrong in one thing.
 #[test]
-fn both_readers_agree_on_the_examples() {
+fn the_readers_agree_on_the_examples() {
     let Some(readers) = Readers::new() else { return };
     let examples = repository("proofs/coq/checker/examples");
     readers.prove(&examples, &files_in(&examples, "proof"));
@@ -332,7 +332,7 @@ fn mutated(proof: &[&str], other: &[&str], random: &mut TestRng) -> String {
 
 /// 10,000 proofs that were changed in one thing, of which some are still proofs.
 #[test]
-fn both_readers_agree_on_changed_proofs() {
+fn the_readers_agree_on_changed_proofs() {
     let Some(readers) = Readers::new() else { return };
     let folder = folder("changed_proofs");
     for line in [

@@ -427,14 +427,8 @@ impl CheckArguments {
             let begun = Instant::now();
             let CheckedSize { mut line, worst, unmapped } =
                 self.check_size(line, &work, mapper, cluster.as_mut())?;
-            if let (Some(proofs), Mapper::Algorithm(algorithm, _)) = (&mut proofs, mapper)
-                && line.holds
-            {
-                let progress = Progress::new(&counted(edges, "edge"), "proofs")?;
-                let digest = proofs.add_size((self.class(), edges), *algorithm, &progress);
-                progress.finish();
-                line.proofs_sha256 = Some(digest?);
-            }
+            let proved = self.prove(&mut proofs, &line, mapper);
+            line.proofs_sha256 = proved.as_ref().ok().cloned().flatten();
             checked.interrupted = line.interrupted;
             checked.is_cut |= line.interrupted || line.stopped == Some(true);
             checked.has_unmapped |= line.failed > 0 || line.unknown.unwrap_or_default() > 0;
@@ -446,6 +440,7 @@ impl CheckArguments {
                 *first = first.take().or_else(|| found.clone());
             }
             report.size(line)?;
+            proved?;
             if let Some(cluster) = cluster {
                 report.threads(cluster, &counted(edges, "edge"))?;
             }
@@ -459,6 +454,26 @@ impl CheckArguments {
         }
         proofs.map_or(Ok(()), MapProofs::close)?;
         Ok(checked)
+    }
+
+    /// Adds the proofs of a size whose starts are all mapped right, and returns their digest.
+    fn prove(
+        &self,
+        proofs: &mut Option<MapProofs>,
+        line: &SizeLine,
+        mapper: &Mapper,
+    ) -> Result<Option<String>, CliError> {
+        let (Some(proofs), Mapper::Algorithm(algorithm, _)) = (proofs, mapper) else {
+            return Ok(None);
+        };
+        if !line.holds {
+            remark!("no proofs of {} are written", line.name());
+            return Ok(None);
+        }
+        let progress = Progress::new(&counted(line.edges, "edge"), "proofs")?;
+        let digest = proofs.add_size((self.class(), line.edges), *algorithm, &progress);
+        progress.finish();
+        digest.map(Some)
     }
 
     /// Writes the files that are asked for.

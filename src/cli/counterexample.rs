@@ -234,18 +234,16 @@ impl CounterexampleArguments {
 
     /// The text of the proofs of some pairs, if it is wanted. If there is none, a remark says why.
     fn proofs(&self, found: &WorldPairs, marker: AidKind) -> String {
-        let proofs = self.proof.path().map(|_| found.proofs(marker));
-        proofs.map_or_else(String::new, |proofs| {
-            proofs.unwrap_or_else(|why| {
-                self.proof.remark(&why);
-                String::new()
-            })
+        let Some(path) = self.proof.path() else { return String::new() };
+        found.proofs(marker).unwrap_or_else(|why| {
+            remark!("{}: without the pairs of {}: {why}", path.display(), marker.name());
+            String::new()
         })
     }
 
     fn write_proofs(&self, proofs: &str) -> Result<(), CliError> {
         if proofs.is_empty() {
-            self.proof.remark(&"there is no pair");
+            self.proof.remark(&"there is no pair with a proof");
             return Ok(());
         }
         self.proof.write_text(proofs)

@@ -4,10 +4,10 @@
 use std::{
     ffi::{OsStr, OsString},
     fs,
-    io::{self, Read, Write},
+    io::{self, BufWriter, Read, Write},
     path::{Path, PathBuf},
     process,
-    sync::{Mutex, PoisonError},
+    sync::{Mutex, MutexGuard, PoisonError},
 };
 
 use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
@@ -21,34 +21,102 @@ use super::{
 /// Locked while a file is written.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// Ends the program, and those that it started, when no file is being written.
+/// The temporary files of those that are not complete.
+static PARTIAL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn partial_files() -> MutexGuard<'static, Vec<PathBuf>> {
+    PARTIAL.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Ends the program, and those that it started, when no file is being written. Of a file that is written in parts
+/// nothing is left.
 pub fn exit_between_files(code: i32) -> ! {
     children::end_all();
     let _not_writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+    for partial in partial_files().iter() {
+        // Another process may have removed it.
+        let _ = fs::remove_file(partial);
+    }
     process::exit(code)
 }
 
-/// Writes a file completely or not at all: the bytes go to a temporary file beside it, which is then
-/// renamed.
+/// Writes a file completely or not at all.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
+    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut file = create_whole(path)?;
+    file.write_all(bytes).map_err(|error| not_writable(path, &error))?;
+    file.complete()
+}
+
+/// A file that is written in parts, completely or not at all: until it is complete it is a temporary file beside its place.
+#[derive(Debug)]
+pub struct WholeFile {
+    file: BufWriter<fs::File>,
+    path: PathBuf,
+    /// `None` if it is a device or a pipe, which is not replaced, or complete.
+    partial: Option<PathBuf>,
+}
+
+/// Creates a file that is written in parts.
+pub fn create_whole(path: &Path) -> Result<WholeFile, CliError> {
     let Some(name) = path.file_name() else {
         return Err(CliError::in_file(path, "this is not a file name"));
     };
     files().write(path, FileUse::Written).map_err(CliError::Input)?;
-    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
-    // A device or a pipe is not replaced.
-    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
-        return fs::write(path, bytes).map_err(|error| not_writable(path, &error));
-    }
-    let mut partial_name = OsString::from(".");
-    partial_name.push(name);
-    partial_name.push(format!(".{}.partial", process::id()));
-    let partial = path.with_file_name(partial_name);
-    fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path)).map_err(|error| {
-        // If this fails too, the first error is the one to report.
-        let _ = fs::remove_file(&partial);
+    let is_replaced = !fs::metadata(path).is_ok_and(|metadata| !metadata.is_file());
+    let partial = is_replaced.then(|| {
+        let mut partial_name = OsString::from(".");
+        partial_name.push(name);
+        partial_name.push(format!(".{}.partial", process::id()));
+        path.with_file_name(partial_name)
+    });
+    partial_files().extend(partial.clone());
+    let file = fs::File::create(partial.as_deref().unwrap_or(path)).map(BufWriter::new);
+    let file = file.map_err(|error| {
+        forget(partial.as_deref());
         not_writable(path, &error)
-    })
+    })?;
+    Ok(WholeFile { file, path: path.to_owned(), partial })
+}
+
+/// A temporary file is no more.
+fn forget(partial: Option<&Path>) {
+    partial_files().retain(|known| Some(known.as_path()) != partial);
+}
+
+impl WholeFile {
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// Returns an error if it cannot be written. Then nothing is left of it.
+    pub fn complete(mut self) -> Result<(), CliError> {
+        let named = self.file.flush().and_then(|()| match &self.partial {
+            Some(partial) => fs::rename(partial, &self.path),
+            None => Ok(()),
+        });
+        named.map_err(|error| not_writable(&self.path, &error))?;
+        forget(self.partial.take().as_deref());
+        Ok(())
+    }
+}
+
+impl Drop for WholeFile {
+    fn drop(&mut self) {
+        let Some(partial) = self.partial.take() else { return };
+        // If this fails, the first error is the one to report.
+        let _ = fs::remove_file(&partial);
+        forget(Some(&partial));
+    }
+}
+
+impl Write for WholeFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
 }
 
 /// A file that grows. The beginning of a log is useful even if its writer was killed.
@@ -196,6 +264,7 @@ pub fn write_world(path: &Path, world: &NamedWorld) -> Result<(), CliError> {
     write_whole(path, &bytes)
 }
 
-fn not_writable(path: &Path, error: &io::Error) -> CliError {
+/// The error if a file cannot be written.
+pub fn not_writable(path: &Path, error: &io::Error) -> CliError {
     CliError::in_file(path, format!("cannot be written: {error}"))
 }

@@ -6,8 +6,9 @@ use super::{FoldedWalk, PerceivedWalk, UnionStep, WalkContradiction, WalkEnd, fo
 use crate::{
     aid::AidAction,
     ambiguity::{self, Comparison},
-    counts::counted,
+    counts::{counted, grouped},
     embedded_graph::{Dart, EmbeddedGraph},
+    folding::MAX_DARTS,
     isomorphism::isomorphism,
     marker::{Directional, MarkerKind},
     percept::{Door, Sighting},
@@ -64,6 +65,8 @@ pub enum NotProved {
     Lost,
     #[error("nothing was perceived")]
     NoPercept,
+    #[error("the junctions on the walk have more than {} doors together", grouped(MAX_DARTS as u128))]
+    TooManyDarts,
     #[error("only a directional marker shows that a walk determines its world")]
     OtherMarker,
     #[error("the walk does not determine its world: {} never followed", counted_doors(*.0))]

@@ -2,9 +2,10 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
+    aid::AidAction,
     any_graph::{Class, any_graph},
     folding::FoldedTrail,
-    mapping::MappingMethod,
+    mapping::{MappingEvent, MappingMethod, MovableEvent, SafeguardEvent},
     marker::{MARKERS, NoMarker, Undirected},
     percept::{Door, Percept, Sighting},
     world::GraphWorld,
@@ -44,6 +45,47 @@ fn a_walk_that_leaves_a_door_open_has_no_proof() {
     let ring = EmbeddedGraph::cycle(3);
     let walk = PerceivedWalk::in_world((&ring, Dart(0)), Directional, Dart(0), &[Door(1), Door(1)]);
     assert_eq!(Proof::of_map(&ring, Dart(0), walk).unwrap_err(), NotProved::Open(2));
+}
+
+/// A log may say that a junction has any number of doors.
+#[test]
+fn a_walk_along_too_many_doors_has_no_proof() {
+    let seen = |degree| [Percept { degree, sighting: Sighting::Nothing }; 2];
+    assert_eq!(PerceivedWalk::new(&seen(u32::MAX), &[Door(0)]), Err(NotProved::TooManyDarts));
+    assert!(PerceivedWalk::new(&seen(1000), &[Door(0)]).is_ok());
+}
+
+#[test]
+fn a_run_of_a_robot_that_got_lost_or_moved_its_marker_is_no_walk() {
+    let percept = Percept { degree: 1, sighting: Sighting::Nothing };
+    let with = |event| {
+        let mut recorder = WalkRecorder::default();
+        recorder.event(MappingEvent::Started { percept });
+        recorder.event(event);
+        recorder.walk().err()
+    };
+    assert_eq!(with(MappingEvent::Moved { door: Door(0), percept }), None);
+    let lost = MappingEvent::Safeguard(SafeguardEvent::Relocated);
+    assert_eq!(with(lost), Some(NotProved::Lost));
+    let dropped = MappingEvent::Movable(MovableEvent::Did(AidAction::Drop));
+    assert_eq!(with(dropped), Some(NotProved::Action(AidAction::Drop)));
+}
+
+#[test]
+fn a_walk_differs_from_a_world_where_its_percepts_or_doors_do() {
+    let ring = EmbeddedGraph::cycle(3);
+    let doors = [Door(1); 4];
+    let walk = PerceivedWalk::in_world((&ring, Dart(0)), Directional, Dart(0), &doors);
+    let in_ring = |of| {
+        let larger = EmbeddedGraph::cycle(of);
+        walk.first_difference((&larger, Dart(0)), Directional, Dart(0))
+    };
+    assert_eq!((in_ring(3), in_ring(4), in_ring(2)), (None, Some(3), Some(2)));
+    let chain = EmbeddedGraph::chain(3);
+    let [none, one] = [NoMarker, Directional]
+        .map(|marker| PerceivedWalk::in_world((&chain, Dart(0)), marker, Dart(0), &[Door(1)]));
+    assert_eq!(none.percepts().len(), 1);
+    assert_eq!(one.doors(), []);
 }
 
 #[test]

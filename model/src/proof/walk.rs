@@ -1,12 +1,14 @@
 //! Walks: percepts and doors in turn.
 
+use std::iter;
+
 use super::{NotProved, text};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
+    folding::MAX_DARTS,
     mapping::{MapWalk, MappingEvent, MovableEvent, Observer, SafeguardEvent},
-    marker::MarkerKind,
+    marker::{Marker, MarkerKind},
     percept::{Door, Percept},
-    world::GraphWorld,
 };
 
 /// What a robot perceived, and the doors that it took: one percept more than doors.
@@ -20,13 +22,18 @@ impl PerceivedWalk {
     /// Percepts and doors in turn, up to the last percept. A door after it is left out.
     ///
     /// # Errors
-    /// Returns an error if there is no percept, or a sighting that is not of a fixed marker.
+    /// Returns an error if there is no percept, or a sighting that is not of a fixed marker, or if the vertices have more
+    /// than [`MAX_DARTS`] doors together.
     pub fn new(percepts: &[Percept], doors: &[Door]) -> Result<Self, NotProved> {
         let visits = percepts.len().min(doors.len() + 1);
         let percepts = &percepts[..visits];
         if let Some(other) = percepts.iter().find(|percept| text::word(percept.sighting).is_none())
         {
             return Err(NotProved::Sighting(other.sighting));
+        }
+        let darts: u64 = percepts.iter().map(|percept| u64::from(percept.degree)).sum();
+        if darts > MAX_DARTS as u64 {
+            return Err(NotProved::TooManyDarts);
         }
         let moves = visits.checked_sub(1).ok_or(NotProved::NoPercept)?;
         Ok(Self { percepts: percepts.to_vec(), doors: doors[..moves].to_vec() })
@@ -40,19 +47,9 @@ impl PerceivedWalk {
         from: Dart,
         doors: &[Door],
     ) -> Self {
-        let start = GraphWorld::with_aid(graph, marker, facing);
-        let mut state = start.state();
-        state.pose = from;
-        let mut walk = Self { percepts: vec![start.clone().at(state).sensed()], doors: Vec::new() };
-        for &door in doors {
-            if door.0 >= graph.degree_around(state.pose) {
-                break;
-            }
-            state.pose = graph.opposite(graph.behind(state.pose, door));
-            walk.doors.push(door);
-            walk.percepts.push(start.clone().at(state).sensed());
-        }
-        walk
+        let percepts: Vec<_> = percepts((graph, facing), marker, from, doors).collect();
+        let doors = doors[..percepts.len() - 1].to_vec();
+        Self { percepts, doors }
     }
 
     /// The first visit with another percept than in a world, or to which no door leads there; `None` if the walk is one in
@@ -63,12 +60,8 @@ impl PerceivedWalk {
         marker: MarkerKind,
         from: Dart,
     ) -> Option<usize> {
-        let there = Self::in_world(start, marker, from, &self.doors);
-        let differs = |(one, other)| one != other;
-        let first = self.percepts.iter().zip(&there.percepts).position(differs);
-        first.or_else(|| {
-            (there.percepts.len() < self.percepts.len()).then_some(there.percepts.len())
-        })
+        let mut there = percepts(start, marker, from, &self.doors);
+        self.percepts.iter().position(|&percept| there.next() != Some(percept))
     }
 
     pub fn percepts(&self) -> &[Percept] {
@@ -86,6 +79,25 @@ impl PerceivedWalk {
         self.doors.truncate(visit);
         self
     }
+}
+
+/// The percepts of a walk in a world, up to the first door that does not exist. There is one at least.
+fn percepts<'w>(
+    (graph, facing): (&'w EmbeddedGraph, Dart),
+    marker: MarkerKind,
+    from: Dart,
+    doors: &'w [Door],
+) -> impl Iterator<Item = Percept> + 'w {
+    let sensed = move |pose| Percept {
+        degree: graph.degree_around(pose),
+        sighting: marker.sighting(graph, facing, pose),
+    };
+    let behind = move |pose: &mut Dart, door: &Door| {
+        let exists = door.0 < graph.degree_around(*pose);
+        *pose = graph.opposite(graph.behind(*pose, *door));
+        exists.then_some(*pose)
+    };
+    iter::once(from).chain(doors.iter().scan(from, behind)).map(sensed)
 }
 
 /// Records the walk of a run.

@@ -309,6 +309,40 @@ proptest! {
         }
     }
 
+    /// A choice is found exactly if one fits, and a robot can then drive as it says.
+    #[test]
+    fn a_choice_that_is_found_fits(
+        graph in any_graph(Class::Multigraph, 4),
+        visits in any_visits(true, 1..=3, 5),
+        open in vec(any::<bool>(), 5),
+    ) {
+        let opened = |alternative: &Option<VisitAlternative>| {
+            alternative.map(|known| VisitAlternative { door: None, ..known })
+        };
+        let visits: Vec<_> = visits.iter().zip(open).map(|(visit, is_open)| {
+            let alternatives = visit.alternatives();
+            let alternatives: Vec<_> =
+                if is_open { alternatives.iter().map(opened).collect() } else { alternatives.to_vec() };
+            VisitSet::new(alternatives, visit.way())
+        }).collect();
+        let starts = anywhere(&graph, &Directional);
+        let fits = states_after(&graph, &Directional, &starts, &visits).last().is_none_or(|last| !last.is_empty());
+        let found = choice_in_world(&graph, &Directional, &starts, &visits);
+        prop_assert_eq!(found.is_some(), fits);
+        if let Some((start, choice)) = found {
+            prop_assert!(starts.contains(&start));
+            let chosen = visits.iter().zip(choice).map(|(visit, ChosenAlternative { number, door })| {
+                // At the last visit the robot stays; it could take any door.
+                let with_door = |known: VisitAlternative| VisitAlternative {
+                    door: known.door.or(door).or(Some(Door::BACK)),
+                    ..known
+                };
+                VisitSet::new([visit.alternatives()[number].map(with_door)], visit.way())
+            });
+            prop_assert!(drives(&graph, Directional, start, &chosen.collect::<Vec<_>>()));
+        }
+    }
+
     #[test]
     fn judging_sets_is_judging_each_choice(
         graph in any_graph(Class::Multigraph, 4),

@@ -1,10 +1,6 @@
 //! `--proof FILE`: for each start the proof that its run determines its map, one after the other.
 
-use std::{
-    io::{self, BufWriter, Write},
-    ops::ControlFlow,
-    path::Path,
-};
+use std::{io::Write, ops::ControlFlow, path::Path};
 
 use sha2::{Digest, Sha256};
 use toposlam_logs::hexadecimal;
@@ -17,18 +13,19 @@ use toposlam_model::{
 
 use crate::cli::{
     CliError,
-    output::{self, GrowingFile},
+    output::{self, WholeFile},
 };
 
 /// The file of all proofs.
 pub(super) struct MapProofs<'p> {
     path: &'p Path,
-    file: BufWriter<GrowingFile>,
+    file: WholeFile,
+    is_empty: bool,
 }
 
 impl<'p> MapProofs<'p> {
     pub(super) fn create(path: &'p Path) -> Result<Self, CliError> {
-        Ok(Self { path, file: BufWriter::new(output::create_growing(path)?) })
+        Ok(Self { path, file: output::create_whole(path)?, is_empty: true })
     }
 
     /// Adds the proofs of all starts of a size, in the order of the enumeration, and returns their digest: SHA-256 of their
@@ -58,21 +55,18 @@ impl<'p> MapProofs<'p> {
                 let text = proof.map_err(|error| CliError::at("--proof", error))?.to_string();
                 digest.update(&text);
                 watch.part_done(1);
-                self.file.write_all(text.as_bytes()).map_err(|error| self.unwritten(&error))
+                self.is_empty = false;
+                self.file
+                    .write_all(text.as_bytes())
+                    .map_err(|error| output::not_writable(self.path, &error))
             });
             if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
         result.map(|()| hexadecimal(&digest.finalize()))
     }
 
-    /// Gives the file its name.
+    /// Gives the file its name. Without a proof none is written.
     pub(super) fn close(self) -> Result<(), CliError> {
-        let path = self.path;
-        let unwritten = |error| CliError::in_file(path, format!("cannot be written: {error}"));
-        self.file.into_inner().map_err(|error| unwritten(error.into_error()))?.complete()
-    }
-
-    fn unwritten(&self, error: &io::Error) -> CliError {
-        CliError::in_file(self.path, format!("cannot be written: {error}"))
+        if self.is_empty { Ok(()) } else { self.file.complete() }
     }
 }

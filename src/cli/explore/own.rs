@@ -69,11 +69,8 @@ impl ExploreArguments {
                 String::new()
             }
         };
-        let walk = || {
-            let doors: Vec<_> = run.actions.iter().filter_map(|action| action.door()).collect();
-            PerceivedWalk::in_world((graph, facing), Directional, facing, &doors)
-        };
-        let walk = (self.proof.path().is_some() && run.result.is_ok()).then(walk);
+        let doors: Vec<_> = run.actions.iter().filter_map(|action| action.door()).collect();
+        let is_right = run.result.is_ok();
         let mut run = ReportedRun::new(run, stderr);
         if cause == Some(ExplorerFault::GUESSED) {
             run.find_other_world((graph, facing), self.marker);
@@ -112,12 +109,16 @@ impl ExploreArguments {
         }
         if let Some(map) = run.map() {
             self.write_map(&map, moves, false)?;
-            if let Some(walk) = walk {
-                let start = map.start.unwrap_or(FACING);
-                self.proof.write(|| Ok(vec![Proof::of_map(&map.graph, start, walk)?]))?;
-            }
         } else if !self.map.is_empty() {
             remark!("the map is not written: there is none");
+        }
+        match run.map().filter(|_| is_right) {
+            Some(map) => self.proof.write(|| {
+                let walk = PerceivedWalk::in_world((graph, facing), Directional, facing, &doors);
+                Proof::of_map(&map.graph, map.start.unwrap_or(FACING), walk)
+                    .map(|proof| vec![proof])
+            })?,
+            None => self.proof.remark(&"the map is not right"),
         }
         Ok(outcome)
     }

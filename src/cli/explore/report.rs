@@ -127,10 +127,11 @@ impl<'a> ExploredWorld<'a> {
     }
 
     pub(super) fn outcome(&self) -> Outcome {
+        let with_senses = self.with_senses.as_ref().map_or(Outcome::Holds, SensingRun::outcome);
         match (&self.result, &self.ways) {
             (Err(Flaw::Error(MappingError::Bound { .. })), _) => Outcome::Incomplete,
             (Err(_), _) | (_, Some(Err(_))) => Outcome::Violated,
-            _ if self.with_senses.as_ref().is_some_and(|run| !run.is_right()) => Outcome::Violated,
+            _ if with_senses != Outcome::Holds => with_senses,
             (Ok(_), Some(Ok(ways))) if ways.limit.is_some() => Outcome::Incomplete,
             (Ok(_), _) => Outcome::Holds,
         }

@@ -11,13 +11,13 @@ use toposlam_model::{
     folding::{ArrivalSenses, LengthInterval},
     format::named_world::NamedWorld,
     isomorphism::Candidate,
-    mapping::{Flaw, MappingAlgorithm},
+    mapping::{Flaw, MappingAlgorithm, MappingError},
     percept::{CompassView, Door},
     world::{GraphWorld, SensingWorld},
 };
 
 use crate::cli::{
-    CliError,
+    CliError, Outcome,
     text::{counted, print_paragraph},
 };
 
@@ -39,6 +39,9 @@ pub(super) struct SensingRun {
     moves: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+    /// Whether it ended at the bound on darts.
+    #[serde(skip)]
+    is_at_bound: bool,
 }
 
 /// Checks that the world has what is sensed, and that the algorithm uses it.
@@ -81,13 +84,19 @@ impl SensingRun {
             let mut candidate = Candidate::default();
             algorithm.judge(run, (&world.graph, facing), truly, &mut candidate).map(|_| ())
         });
-        let error = judged.err().map(|flaw| flaw.to_string());
+        let flaw = judged.err();
+        let is_at_bound = matches!(flaw, Some(Flaw::Error(MappingError::Bound { .. })));
+        let error = flaw.map(|flaw| flaw.to_string());
         let moves = error.is_none().then(|| walk.moves());
-        Some(Self { senses: senses.to_vec(), moves, error })
+        Some(Self { senses: senses.to_vec(), moves, error, is_at_bound })
     }
 
-    pub(super) fn is_right(&self) -> bool {
-        self.moves.is_some()
+    pub(super) fn outcome(&self) -> Outcome {
+        match self.moves {
+            Some(_) => Outcome::Holds,
+            None if self.is_at_bound => Outcome::Incomplete,
+            None => Outcome::Violated,
+        }
     }
 
     pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
