@@ -1,8 +1,10 @@
 //! The ends of the ways around the robot: where free space goes on unseen, and where it was seen to end.
 
-use std::cmp::Reverse;
-
-use super::{clearances::Clearances, grid::Grid, params::LaserParams};
+use super::{
+    clearances::Clearances,
+    grid::{Grid, in_order_of},
+    params::LaserParams,
+};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WayEnd {
@@ -120,8 +122,8 @@ fn unknown_borders(map: &Clearances, params: &LaserParams) -> Vec<bool> {
 /// The maxima of a function on a set of cells from which one must descend at least this far to reach a
 /// greater one.
 fn maxima(set: &[usize], value: &[u32], grid: &Grid, prominence: u32) -> Vec<usize> {
-    let mut order = set.to_vec();
-    order.sort_by_cached_key(|&at| Reverse(value[at]));
+    let highest = set.iter().map(|&at| value[at]).max().unwrap_or_default();
+    let order = in_order_of(|at| highest - value[at], set);
     // Components of the cells so far, each with its maximum as its root.
     let mut parent: Vec<u32> = vec![NONE; value.len()];
     let mut maxima: Vec<usize> = order.first().copied().into_iter().collect();

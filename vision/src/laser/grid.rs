@@ -230,6 +230,22 @@ impl Grid {
     }
 }
 
+/// Cells in the order of small numbers, those with the same number in theirs: counting sort.
+pub(super) fn in_order_of(number: impl Fn(usize) -> u32, cells: &[usize]) -> Vec<usize> {
+    let most = cells.iter().map(|&at| number(at)).max().unwrap_or_default() as usize;
+    // Where the next cell with each number goes.
+    let mut next = vec![0; most + 2];
+    cells.iter().for_each(|&at| next[number(at) as usize + 1] += 1);
+    (1..next.len()).for_each(|at| next[at] += next[at - 1]);
+    let mut ordered = vec![0; cells.len()];
+    for &at in cells {
+        let to = &mut next[number(at) as usize];
+        ordered[*to] = at;
+        *to += 1;
+    }
+    ordered
+}
+
 /// Neighbouring cells in a rectangle, by the columns and rows of its corners.
 struct Obstacle {
     cells: Vec<usize>,

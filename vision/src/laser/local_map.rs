@@ -15,7 +15,7 @@ use super::{
     way_graph::{ArmJudge, CountedArms, WayGraph},
 };
 use crate::{
-    geometry::{distance, from_robot},
+    geometry::distance,
     place::{PlaceFacts, SeenPlace},
 };
 
@@ -104,13 +104,12 @@ impl<'a> LocalWays<'a> {
     }
 }
 
-pub(super) fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
-    let map_from_robot = from_robot(robot);
-    let mut rays = Rays { from: map_from_robot * scan.scanner(), ..Rays::default() };
+pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
+    let mut rays = Rays { from: scan.scanner(), ..Rays::default() };
     let readings: Vec<(f64, Option<f64>)> = scan.ranges_hit().collect();
     // Nothing beyond is on the map while the scan is remembered.
     let farthest = 2.0 * params.reach + params.memory;
-    let point = |bearing: f64, range: f64| map_from_robot * scan.point(bearing, range);
+    let point = |bearing: f64, range: f64| scan.point(bearing, range);
     let ends: Vec<Option<Point2<f64>>> =
         readings.iter().map(|&(bearing, range)| Some(point(bearing, range?))).collect();
     let end = |index: usize| *ends.get(index)?;
@@ -132,11 +131,12 @@ pub(super) fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Ra
         }
         rays.hits.push(point(bearing, range));
         let Some((at, step, other)) = next(index) else { continue };
-        // Rays closer than cells, up to where the map ends.
-        let parts = (step.abs() * params.reach / params.cell).ceil() as u32;
+        // Rays closer than cells, up to where they end or the map does.
+        let nearest = range.min(other).min(farthest);
+        let parts = (step.abs() * nearest.min(params.reach) / params.cell).ceil() as u32;
         for part in 1..parts {
             let bearing = bearing + step * f64::from(part) / f64::from(parts);
-            rays.between.push(point(bearing, range.min(other).min(farthest)));
+            rays.between.push(point(bearing, nearest));
         }
         if at != index + 1 {
             continue;

@@ -7,7 +7,7 @@ use super::{
     params::LocalMapParams,
 };
 
-/// The rays of one scan, in metres on the local map.
+/// The rays of one scan, in metres in the robot's frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rays {
     pub from: Point2<f64>,
@@ -17,19 +17,6 @@ pub(super) struct Rays {
     pub between: Vec<Point2<f64>>,
     /// Straight pieces of wall between the ends of neighbouring rays.
     pub walls: Vec<[Point2<f64>; 2]>,
-}
-
-impl Rays {
-    /// The same rays in another frame.
-    pub(super) fn moved(&self, motion: &Isometry2<f64>) -> Self {
-        let all = |points: &[Point2<f64>]| points.iter().map(|point| motion * point).collect();
-        Self {
-            from: motion * self.from,
-            hits: all(&self.hits),
-            between: all(&self.between),
-            walls: self.walls.iter().map(|ends| ends.map(|end| motion * end)).collect(),
-        }
-    }
 }
 
 /// Where a map shows walls, and what is near them.
@@ -71,26 +58,27 @@ impl RayCounts {
         }
     }
 
-    pub(super) fn add(&mut self, rays: &Rays) {
-        self.count(rays, 1);
+    /// Adds the rays of a scan, by the motion from the robot's frame to that of the map.
+    pub(super) fn add(&mut self, rays: &Rays, map_from_robot: &Isometry2<f64>) {
+        self.count(rays, map_from_robot, 1);
     }
 
-    pub(super) fn remove(&mut self, rays: &Rays) {
-        self.count(rays, -1);
+    /// Removes what the same rays and motion have added.
+    pub(super) fn remove(&mut self, rays: &Rays, map_from_robot: &Isometry2<f64>) {
+        self.count(rays, map_from_robot, -1);
     }
 
     /// Adds so much to the counts of the cells of rays.
-    fn count(&mut self, rays: &Rays, more: i32) {
+    fn count(&mut self, rays: &Rays, map_from_robot: &Isometry2<f64>, more: i32) {
         let side = self.side;
-        let from = self.place(rays.from);
+        let place = self.place_from(map_from_robot);
+        let from = place(rays.from);
         for (ends, is_hit) in [(&rays.hits, true), (&rays.between, false)] {
             for &end in ends {
-                let end = self.place(end);
+                let end = place(end);
                 let last = index_of(side, cell_at(end));
                 let before = last.map(|last| self.passes[last]);
-                for_cells(side, [from, end], 1.0, |at, is_new| {
-                    self.passes[at] += if is_new { more } else { 0 };
-                });
+                for_cells(side, [from, end], 1.0, |at, _| self.passes[at] += more);
                 // A ray does not pass the cell in which it ends.
                 if let Some((last, before)) = last.zip(before) {
                     self.passes[last] = before;
@@ -99,7 +87,7 @@ impl RayCounts {
             }
         }
         for ends in &rays.walls {
-            let ends = ends.map(|end| self.place(end));
+            let ends = ends.map(&place);
             let known = ends.map(|end| index_of(side, cell_at(end)));
             for_cells(side, ends, 2.0, |at, is_new| {
                 if is_new && !known.contains(&Some(at)) {
@@ -188,8 +176,14 @@ impl RayCounts {
 
     /// A point in cells from the corner; far away, one beyond every map.
     fn place(&self, point: Point2<f64>) -> Vector2<f64> {
-        let place = (point - self.origin) / self.cell;
-        place.map(|at| at.clamp(-FARTHEST, FARTHEST))
+        self.place_from(&Isometry2::identity())(point)
+    }
+
+    /// The places of points of another frame, by the motion from there.
+    fn place_from(&self, motion: &Isometry2<f64>) -> impl Fn(Point2<f64>) -> Vector2<f64> + use<> {
+        let turn = motion.rotation.to_rotation_matrix().into_inner() / self.cell;
+        let shift = (motion.translation.vector - self.origin.coords) / self.cell;
+        move |point| (turn * point.coords + shift).map(|at| at.clamp(-FARTHEST, FARTHEST))
     }
 }
 
@@ -231,7 +225,8 @@ const FARTHEST: f64 = 1e9;
 const PARTS: f64 = 4_294_967_296.0;
 
 /// Visits the cells of a square map on a line between two places, sampled this often on each cell that it crosses along its
-/// main axis: for each sample its cell, and whether it is another one than that of the sample before.
+/// main axis, up to the last sample before its end: for each sample its cell, and whether it is another one than that of the
+/// sample before.
 fn for_cells(
     side: usize,
     [from, to]: [Vector2<f64>; 2],
@@ -239,14 +234,14 @@ fn for_cells(
     mut visit: impl FnMut(usize, bool),
 ) {
     let off = to - from;
-    let steps = ceil(density * off.x.abs().max(off.y.abs())).max(1);
-    let step = off / steps as f64;
+    let steps = density * off.amax();
+    let step = if steps > 0.0 { off / steps } else { Vector2::zeros() };
     let border = side as f64;
     let is_inner = |at: f64| 1.0 <= at && at < border - 1.0;
     let is_all_on_map = is_inner(from.x) && is_inner(from.y) && is_inner(to.x) && is_inner(to.y);
-    let (mut first, mut last) = (0, steps);
+    let (mut first, mut last) = (0, floor(steps));
     if !is_all_on_map {
-        (first, last) = about_on_map(border, [from, to], step, steps);
+        (first, last) = about_on_map(border, [from, to], step, last);
     }
     let start = if first > 0 { from + first as f64 * step } else { from };
     let in_parts = |at: f64| (at * PARTS) as i64;
@@ -262,8 +257,7 @@ fn for_cells(
         }
     }
     let mut before = usize::MAX;
-    let samples = last + 1 - first;
-    for _ in 0..samples {
+    for _ in first..=last {
         let at = (y >> 32) as usize * side + (x >> 32) as usize;
         // The visitor can do without a branch, which would be hard to predict.
         visit(at, at != before);
@@ -326,7 +320,7 @@ mod tests {
             let mut visited = Vec::new();
             for_cells(SIDE, ends, density, |at, is_new| if is_new { visited.push(at) });
             let off = ends[1] - ends[0];
-            let steps = (density * off.amax()).ceil().max(1.0);
+            let steps = density * off.amax();
             let samples = (0..=steps as u32).map(|step| ends[0] + f64::from(step) / steps * off);
             let cells: Vec<Vector2<f64>> = samples.collect();
             // At the border of two cells rounding decides.

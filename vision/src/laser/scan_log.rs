@@ -58,20 +58,31 @@ struct LoggedScan {
 }
 
 /// A scan on a local map.
-struct PlacedScan {
-    robot: Point2<f64>,
+struct PlacedScan<'a> {
+    map_from_robot: Isometry2<f64>,
     viewpoint: Viewpoint,
-    rays: Rays,
+    rays: &'a Rays,
 }
 
 impl LoggedScan {
-    fn placed(&self, map_from_log: &Isometry2<f64>) -> PlacedScan {
+    fn placed(&self, map_from_log: &Isometry2<f64>) -> PlacedScan<'_> {
         let placed = moved(map_from_log, &self.pose);
         PlacedScan {
-            robot: placed.position.into(),
+            map_from_robot: from_robot(&placed),
             viewpoint: Viewpoint::new(&self.scan, &placed),
-            rays: self.rays.moved(&from_robot(&placed)),
+            rays: &self.rays,
         }
+    }
+}
+
+impl PlacedScan<'_> {
+    fn robot(&self) -> Point2<f64> {
+        self.map_from_robot.translation.vector.into()
+    }
+
+    /// Where its rays ended at an obstacle.
+    fn hits(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
+        self.rays.hits.iter().map(|hit| self.map_from_robot * hit)
     }
 }
 
@@ -138,7 +149,7 @@ impl ScanLogBuilder {
             way += log.scans.last().map_or(0.0, |last| in_steps(last.odometry.distance(&odometry)));
             let placed = moved(&frame, &odometry);
             let pose = matcher.add_scan(&scan, &placed, way, way - params.map.memory);
-            let rays = rays(&scan, &Odometry::default(), &params.map);
+            let rays = rays(&scan, &params.map);
             let walls = matcher.wall_points(&scan, way);
             log.squares.entry(square(&pose)).or_default().push(log.scans.len());
             log.scans.push(LoggedScan { number, scan, hash, odometry, pose, way, rays, walls });
@@ -223,7 +234,7 @@ impl ScanLog {
         from_robot(&Odometry { heading: pose.heading + scan.direction_of_walls(), ..*pose })
     }
 
-    fn local_view(&self, view: usize, with_facts: bool) -> (LocalView, Option<PlaceFacts>) {
+    fn local_view<'a>(&'a self, view: usize, with_facts: bool) -> (LocalView, Option<PlaceFacts>) {
         let params = &self.params.map;
         let here = &self.scans[view];
         let map_from_log = self.log_from_map(view).inverse();
@@ -232,26 +243,27 @@ impl ScanLog {
         // What several views agree on must not depend on how the walls lie in the cells.
         let corner = Vector2::repeat(if here.hash.is_multiple_of(2) { 0.0 } else { 0.5 });
         let mut counts = RayCounts::around(robot, side + 2, params.cell, corner);
-        let on_pass = |other: &&LoggedScan| (other.way - here.way).abs() <= params.memory;
-        let own: Vec<&LoggedScan> = self.scans.iter().filter(on_pass).collect();
-        let mut placed: Vec<PlacedScan> =
+        // The scans are in the order of the robot's way.
+        let first = self.scans.partition_point(|scan| here.way - scan.way > params.memory);
+        let end = self.scans.partition_point(|scan| scan.way - here.way <= params.memory);
+        let own = &self.scans[first..end];
+        let mut placed: Vec<PlacedScan<'_>> =
             own.iter().map(|scan| scan.placed(&map_from_log)).collect();
         for scan in &placed {
-            counts.add(&scan.rays);
+            counts.add(scan.rays, &scan.map_from_robot);
         }
         // Passes are compared with what this one shows, and not with each other.
-        let (sure, unsure) = self.agreeing_passes(here, &own, &counts, &map_from_log);
-        let add =
-            |counts: &mut RayCounts, placed: &mut Vec<PlacedScan>, passes: Vec<PlacedScan>| {
-                for scan in &passes {
-                    counts.add(&scan.rays);
-                }
-                placed.extend(passes);
-            };
-        let local = |counts: &RayCounts, placed: &[PlacedScan]| {
+        let (sure, unsure) = self.agreeing_passes(here, own, &counts, &map_from_log);
+        let add = |counts: &mut RayCounts, placed: &mut Vec<_>, passes: Vec<PlacedScan<'a>>| {
+            for scan in &passes {
+                counts.add(scan.rays, &scan.map_from_robot);
+            }
+            placed.extend(passes);
+        };
+        let local = |counts: &RayCounts, placed: &[PlacedScan<'_>]| {
             let grid = counts.window(robot, side, params);
-            let (viewpoints, driven): (Vec<_>, Vec<_>) =
-                placed.iter().map(|scan| (scan.viewpoint.clone(), scan.robot)).unzip();
+            let (viewpoints, driven) =
+                placed.iter().map(|scan| (scan.viewpoint.clone(), scan.robot())).unzip();
             LocalWays::new(grid, LocalScans { robot, viewpoints, driven, params: &self.params })
         };
         let is_split = !unsure.is_empty();
@@ -265,13 +277,13 @@ impl ScanLog {
     }
 
     /// The scans of other passes that agree with what a pass shows: those that do beyond doubt, and others.
-    fn agreeing_passes(
-        &self,
+    fn agreeing_passes<'a>(
+        &'a self,
         here: &LoggedScan,
-        own: &[&LoggedScan],
+        own: &[LoggedScan],
         counts: &RayCounts,
         map_from_log: &Isometry2<f64>,
-    ) -> (Vec<PlacedScan>, Vec<PlacedScan>) {
+    ) -> (Vec<PlacedScan<'a>>, Vec<PlacedScan<'a>>) {
         let (mut sure, mut unsure) = (Vec::new(), Vec::new());
         let passes = self.other_passes(here);
         if passes.is_empty() {
@@ -282,7 +294,7 @@ impl ScanLog {
         let on_map = |scan: &LoggedScan| moved(map_from_log, &scan.pose);
         let own_pass = OwnPass::new(counts, map);
         let walls = LazyCell::new(|| {
-            let own = apart(own.iter().copied());
+            let own = apart(own);
             own_walls(own.into_iter().map(|scan| (&scan.walls[..], on_map(scan))), matching)
         });
         for pass in passes {
@@ -299,9 +311,9 @@ impl ScanLog {
                 });
                 own_pass.correction(&walls, points) * map_from_log
             };
-            let placed: Vec<PlacedScan> = pass.iter().map(|scan| scan.placed(&motion)).collect();
-            let hits = placed.iter().flat_map(|scan| &scan.rays.hits);
-            match own_pass.widest_astray(hits.copied(), least) {
+            let placed: Vec<PlacedScan<'_>> =
+                pass.iter().map(|scan| scan.placed(&motion)).collect();
+            match own_pass.widest_astray(placed.iter().flat_map(PlacedScan::hits), least) {
                 Some(widest) if widest < map.min_width => sure.extend(placed),
                 Some(_) => unsure.extend(placed),
                 None => {}

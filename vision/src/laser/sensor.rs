@@ -29,15 +29,23 @@ pub struct LaserSensor {
     /// Where rays passed and ended, once for each place of the corners of cells; empty before the first scan.
     counts: Vec<RayCounts>,
     views: usize,
-    /// The scans in the local map, each with the length of the robot's way until then, in metres.
-    scans: VecDeque<(f64, Rays)>,
-    viewpoints: VecDeque<Viewpoint>,
+    /// The scans in the local map.
+    scans: VecDeque<MappedScan>,
     /// The length of the robot's way, in metres.
     way: f64,
     /// Where the last scan was taken that was used.
     last: Option<Odometry>,
     /// That of the last view.
     map: Option<LocalMap>,
+}
+
+#[derive(Clone, Debug)]
+struct MappedScan {
+    /// The length of the robot's way until then, in metres.
+    way: f64,
+    map_from_robot: Isometry2<f64>,
+    rays: Rays,
+    viewpoint: Viewpoint,
 }
 
 /// Corners of cells, in cells from the origin. Successive views take them in turn: what several views agree on must not
@@ -56,29 +64,30 @@ impl LaserSensor {
     }
 
     /// Adds the rays of a scan, and forgets those of old ones.
-    fn add(&mut self, rays: Rays, robot: Point2<f64>, side: usize) {
+    fn add(&mut self, scan: MappedScan, robot: Point2<f64>, side: usize) {
         let covers = |counts: &RayCounts| counts.covers(robot, side);
         let moved = self.counts.is_empty() || !self.counts.iter().all(covers);
         let forgotten = self.way - self.params.map.memory;
-        while let Some((_, old)) = self.scans.front().filter(|(way, _)| *way < forgotten) {
+        while let Some(old) = self.scans.front().filter(|old| old.way < forgotten) {
             for counts in self.counts.iter_mut().filter(|_| !moved) {
-                counts.remove(old);
+                counts.remove(&old.rays, &old.map_from_robot);
             }
             self.scans.pop_front();
-            self.viewpoints.pop_front();
         }
-        self.scans.push_back((self.way, rays));
+        let add = |counts: &mut RayCounts, scan: &MappedScan| {
+            counts.add(&scan.rays, &scan.map_from_robot);
+        };
         if moved {
             let around = |corner| {
                 let cell = self.params.map.cell;
                 let mut counts = RayCounts::around(robot, MARGIN * side, cell, corner);
-                self.scans.iter().for_each(|(_, rays)| counts.add(rays));
+                self.scans.iter().for_each(|scan| add(&mut counts, scan));
                 counts
             };
             self.counts = CORNERS.into_iter().map(around).collect();
-        } else if let Some((_, rays)) = self.scans.back() {
-            self.counts.iter_mut().for_each(|counts| counts.add(rays));
         }
+        self.counts.iter_mut().for_each(|counts| add(counts, &scan));
+        self.scans.push_back(scan);
     }
 }
 
@@ -105,12 +114,18 @@ impl PlaceSensor for LaserSensor {
         let robot = self.matcher.add_scan(scan, &placed, self.way, self.way - params.memory);
         let position = Point2::from(robot.position);
         let side = params.window();
-        self.add(rays(scan, &robot, &params), position, side);
-        self.viewpoints.push_back(Viewpoint::new(scan, &robot));
+        let mapped = MappedScan {
+            way: self.way,
+            map_from_robot: from_robot(&robot),
+            rays: rays(scan, &params),
+            viewpoint: Viewpoint::new(scan, &robot),
+        };
+        self.add(mapped, position, side);
         let counts = self.counts.get(self.views % self.counts.len().max(1))?;
         self.views += 1;
         let grid = counts.window(position, side, &params);
-        let viewpoints: Vec<Viewpoint> = self.viewpoints.iter().cloned().collect();
+        let viewpoints: Vec<Viewpoint> =
+            self.scans.iter().map(|scan| scan.viewpoint.clone()).collect();
         let driven = viewpoints.iter().map(Viewpoint::point).collect();
         let scans = LocalScans { robot: position, viewpoints, driven, params: &self.params };
         let LocalView { map, places, possible_places, width } = LocalWays::new(grid, scans).view();

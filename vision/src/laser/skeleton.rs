@@ -7,7 +7,7 @@ use nalgebra::Point2;
 use super::{
     clearances::Clearances,
     ends::{End, ends, way_lengths},
-    grid::{Cell, Grid},
+    grid::{Cell, Grid, in_order_of},
     params::{LaserParams, LocalMapParams},
 };
 
@@ -61,8 +61,7 @@ fn nearest(set: &[bool], grid: &Grid, point: Point2<f64>, within: f64) -> Option
 /// Removes cells whose removal does not change the topology, those nearest to a wall or to the unknown first.
 fn thin(cells: &mut [bool], ways: &[usize], ends: &[End], map: &Clearances) {
     let is_end = |at: usize| ends.iter().any(|end| end.cell == at);
-    let mut left = ways.to_vec();
-    left.sort_by_cached_key(|&at| map.border[at]);
+    let mut left = in_order_of(|at| map.border[at], ways);
     loop {
         let before = left.len();
         left.retain(|&at| {
