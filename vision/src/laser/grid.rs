@@ -33,12 +33,6 @@ pub(super) fn floor(number: f64) -> i64 {
     towards_zero.saturating_sub(i64::from(number < towards_zero as f64))
 }
 
-/// The least whole number that is not below this one.
-pub(super) fn ceil(number: f64) -> i64 {
-    let towards_zero = number as i64;
-    towards_zero.saturating_add(i64::from(number > towards_zero as f64))
-}
-
 impl Grid {
     pub(super) fn rows(&self) -> usize {
         self.cells.len() / self.columns.max(1)

@@ -6,14 +6,14 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{Isometry2, Point2, Vector2};
+use nalgebra::{Isometry2, Vector2};
 use toposlam_model::driving::odometry::Odometry;
 
 use super::{
     drift::ROUNDS,
     matching::{ScanMatcher, WallPoint},
     params::{LocalMapParams, MatchingParams},
-    ray_counts::{NearWalls, RayCounts},
+    ray_counts::{NearWalls, RayCounts, Rays},
 };
 use crate::geometry::from_robot;
 
@@ -82,28 +82,34 @@ impl<'a> OwnPass<'a> {
         matched.map_or_else(Isometry2::identity, |pose| from_robot(&pose))
     }
 
-    /// The part of the hits of another pass that lie on walls, where the map is known; `None` if too few do.
-    pub(super) fn part_on_walls(&self, hits: impl Iterator<Item = Point2<f64>>) -> Option<f64> {
-        let hits: Vec<[i64; 2]> = hits.map(|hit| self.counts.cell_at(hit)).collect();
-        part_near(&self.near_hits, &hits, [0, 0], LEAST_HITS)
+    /// The cells of the hits of another pass, by its scans, each with the motion to the map.
+    pub(super) fn hits<'r>(
+        &self,
+        pass: impl Iterator<Item = (&'r Rays, Isometry2<f64>)>,
+    ) -> Vec<[i64; 2]> {
+        let mut cells = Vec::new();
+        for (rays, motion) in pass {
+            cells.extend(self.counts.cells_at(&rays.hits, &motion));
+        }
+        cells
     }
 
-    /// The widest wall in free space that another pass sees, in metres, by the ends of its rays on the map; `None` if less than
-    /// this part of them lies on walls, or if more would elsewhere.
-    pub(super) fn widest_astray(
-        &self,
-        hits: impl Iterator<Item = Point2<f64>>,
-        least: f64,
-    ) -> Option<f64> {
-        let hits: Vec<[i64; 2]> = hits.map(|hit| self.counts.cell_at(hit)).collect();
-        part_near(&self.near_hits, &hits, [0, 0], LEAST_HITS).filter(|&part| part >= least)?;
+    /// The part of the hits of another pass that lie on walls, where the map is known; `None` if too few do.
+    pub(super) fn part_on_walls(&self, hits: &[[i64; 2]]) -> Option<f64> {
+        part_near(&self.near_hits, hits, [0, 0], LEAST_HITS)
+    }
+
+    /// The widest wall in free space that another pass sees, in metres, by its hits on the map; `None` if less than this part of
+    /// them lies on walls, or if more would elsewhere.
+    pub(super) fn widest_astray(&self, hits: &[[i64; 2]], least: f64) -> Option<f64> {
+        self.part_on_walls(hits).filter(|&part| part >= least)?;
         let is_known = |hit: &[i64; 2]| self.near_hits.at(*hit).is_some();
         let known = hits.iter().copied().filter(is_known).collect();
         if self.fit_elsewhere(&some_of(known, HITS)) {
             return None;
         }
         let is_astray = |hit: &[i64; 2]| self.near_hits.at(*hit) == Some(false);
-        let astray = groups(hits.into_iter().filter(is_astray).collect());
+        let astray = groups(hits.iter().copied().filter(is_astray).collect());
         let widest = astray.into_iter().map(|sides| sides.norm()).fold(0.0, f64::max);
         Some(self.counts.cell * widest)
     }

@@ -3,7 +3,7 @@
 use nalgebra::{Isometry2, Point2, Vector2};
 
 use super::{
-    grid::{Cell, Grid, ceil, floor},
+    grid::{Cell, Grid},
     params::LocalMapParams,
 };
 
@@ -78,7 +78,7 @@ impl RayCounts {
                 let end = place(end);
                 let last = index_of(side, cell_at(end));
                 let before = last.map(|last| self.passes[last]);
-                for_cells(side, [from, end], 1.0, |at, _| self.passes[at] += more);
+                for_cells(side, [from, end], 0, |at, _| self.passes[at] += more);
                 // A ray does not pass the cell in which it ends.
                 if let Some((last, before)) = last.zip(before) {
                     self.passes[last] = before;
@@ -89,7 +89,7 @@ impl RayCounts {
         for ends in &rays.walls {
             let ends = ends.map(&place);
             let known = ends.map(|end| index_of(side, cell_at(end)));
-            for_cells(side, ends, 2.0, |at, is_new| {
+            for_cells(side, ends, 1, |at, is_new| {
                 if is_new && !known.contains(&Some(at)) {
                     self.hits[at] += more;
                 }
@@ -169,21 +169,30 @@ impl RayCounts {
         }
     }
 
-    /// The column and the row of a point, on the map or not.
-    pub(super) fn cell_at(&self, point: Point2<f64>) -> [i64; 2] {
-        cell_at(self.place(point))
+    /// The columns and rows of points of another frame, by the motion from there, on the map or not.
+    pub(super) fn cells_at<'p>(
+        &self,
+        points: &'p [Point2<f64>],
+        motion: &Isometry2<f64>,
+    ) -> impl Iterator<Item = [i64; 2]> + use<'p> {
+        let place = self.place_from(motion);
+        points.iter().map(move |&point| cell_at(place(point)))
     }
 
-    /// A point in cells from the corner; far away, one beyond every map.
-    fn place(&self, point: Point2<f64>) -> Vector2<f64> {
-        self.place_from(&Isometry2::identity())(point)
+    /// The column and the row of a point, on the map or not.
+    pub(super) fn cell_at(&self, point: Point2<f64>) -> [i64; 2] {
+        cell_at(self.place_from(&Isometry2::identity())(point))
     }
 
     /// The places of points of another frame, by the motion from there.
-    fn place_from(&self, motion: &Isometry2<f64>) -> impl Fn(Point2<f64>) -> Vector2<f64> + use<> {
-        let turn = motion.rotation.to_rotation_matrix().into_inner() / self.cell;
-        let shift = (motion.translation.vector - self.origin.coords) / self.cell;
-        move |point| (turn * point.coords + shift).map(|at| at.clamp(-FARTHEST, FARTHEST))
+    fn place_from(&self, motion: &Isometry2<f64>) -> impl Fn(Point2<f64>) -> Place + use<> {
+        let scale = PARTS / self.cell;
+        let turn = motion.rotation.to_rotation_matrix().into_inner() * scale;
+        let shift = (motion.translation.vector - self.origin.coords) * scale;
+        move |point| {
+            let place = turn * point.coords + shift;
+            [place.x as i64, place.y as i64]
+        }
     }
 }
 
@@ -214,77 +223,64 @@ fn index_of(side: usize, [column, row]: [i64; 2]) -> Option<usize> {
     (column < side && row < side).then(|| row * side + column)
 }
 
+/// Where a point is, from the corner of a map, in [`PARTS`] of a cell.
+type Place = [i64; 2];
+/// The parts of a cell: 2^32.
+const PARTS: f64 = 4_294_967_296.0;
+/// The logarithm of their number.
+const PART_BITS: u32 = 32;
+/// Farther places are nowhere near a map.
+const FARTHEST: i64 = 1 << 61;
+
 /// The cell at a place.
-fn cell_at(place: Vector2<f64>) -> [i64; 2] {
-    [floor(place.x), floor(place.y)]
+fn cell_at(place: Place) -> [i64; 2] {
+    place.map(|at| at >> PART_BITS)
 }
 
-/// Places are at most this many cells from the corner of a map.
-const FARTHEST: f64 = 1e9;
-/// The parts of a cell in which samples are placed: 2^32.
-const PARTS: f64 = 4_294_967_296.0;
-
-/// Visits the cells of a square map on a line between two places, sampled this often on each cell that it crosses along its
-/// main axis, up to the last sample before its end: for each sample its cell, and whether it is another one than that of the
-/// sample before.
-fn for_cells(
-    side: usize,
-    [from, to]: [Vector2<f64>; 2],
-    density: f64,
-    mut visit: impl FnMut(usize, bool),
-) {
-    let off = to - from;
-    let steps = density * off.amax();
-    let step = if steps > 0.0 { off / steps } else { Vector2::zeros() };
-    let border = side as f64;
-    let is_inner = |at: f64| 1.0 <= at && at < border - 1.0;
-    let is_all_on_map = is_inner(from.x) && is_inner(from.y) && is_inner(to.x) && is_inner(to.y);
-    let (mut first, mut last) = (0, floor(steps));
-    if !is_all_on_map {
-        (first, last) = about_on_map(border, [from, to], step, last);
-    }
-    let start = if first > 0 { from + first as f64 * step } else { from };
-    let in_parts = |at: f64| (at * PARTS) as i64;
-    let (mut x, mut y) = (in_parts(start.x), in_parts(start.y));
-    let (east, north) = (in_parts(step.x), in_parts(step.y));
-    if !is_all_on_map {
-        let is_on_map = |x: i64, y: i64| ((x >> 32) as usize) < side && ((y >> 32) as usize) < side;
-        while first <= last && !is_on_map(x, y) {
-            (x, y, first) = (x + east, y + north, first + 1);
-        }
-        while first <= last && !is_on_map(x + (last - first) * east, y + (last - first) * north) {
-            last -= 1;
-        }
-    }
+/// Visits the cells of a square map on a line between two places, sampled on each cell that it crosses along its main axis, or
+/// twice or four times as often if it is halved once or twice; up to the last sample before its end. The visitor gets the cell
+/// of each sample, and whether it is another one than that of the sample before.
+fn for_cells(side: usize, [from, to]: [Place; 2], halved: u32, mut visit: impl FnMut(usize, bool)) {
+    let off = [0, 1].map(|axis| to[axis].saturating_sub(from[axis]));
+    let main = off[0].saturating_abs().max(off[1].saturating_abs());
+    let steps = main >> (PART_BITS - halved);
+    let part = PARTS / f64::from(1 << halved) / main.max(1) as f64;
+    let step = off.map(|off| (off as f64 * part) as i64);
+    let is_all_on_map = [from, to].iter().all(|place| index_of(side, cell_at(*place)).is_some());
+    let (first, last) = if is_all_on_map { (0, steps) } else { on_map(side, from, step, steps) };
+    let [mut x, mut y] = [0, 1].map(|axis| from[axis].saturating_add(first * step[axis]));
     let mut before = usize::MAX;
     for _ in first..=last {
-        let at = (y >> 32) as usize * side + (x >> 32) as usize;
+        let at = (y >> PART_BITS) as usize * side + (x >> PART_BITS) as usize;
         // The visitor can do without a branch, which would be hard to predict.
         visit(at, at != before);
         before = at;
-        (x, y) = (x + east, y + north);
+        (x, y) = (x + step[0], y + step[1]);
     }
 }
 
-/// The first and the last step of a line that are on a map up to this border, or at most a few steps beside it.
+/// The first and the last step of a line that are on a map; the last one is before the first if none is.
 #[cold]
-fn about_on_map(
-    border: f64,
-    [from, to]: [Vector2<f64>; 2],
-    step: Vector2<f64>,
-    steps: i64,
-) -> (i64, i64) {
+fn on_map(side: usize, from: Place, step: Place, steps: i64) -> (i64, i64) {
+    let border = (side as i64) << PART_BITS;
     let (mut first, mut last) = (0, steps);
     for axis in 0..2 {
-        let is_inside = |at: f64| (0.0..border).contains(&at);
-        if is_inside(from[axis]) && is_inside(to[axis]) || step[axis] == 0.0 {
-            continue;
+        let from = from[axis].clamp(-FARTHEST, FARTHEST);
+        // How far it is to the first and to the last place on the map, forwards.
+        let (near, far) = match step[axis] {
+            ..0 => (from + 1 - border, from),
+            _ => (-from, border - 1 - from),
+        };
+        match step[axis].abs() {
+            0 if near > 0 || far < 0 => return (0, -1),
+            0 => {}
+            step => {
+                first = first.max(-(-near).div_euclid(step));
+                last = last.min(far.div_euclid(step));
+            }
         }
-        let [one, other] = [0.0, border].map(|border| (border - from[axis]) / step[axis]);
-        first = first.max(floor(one.min(other)));
-        last = last.min(ceil(one.max(other)));
     }
-    (first, last)
+    if first <= last { (first, last) } else { (0, -1) }
 }
 
 #[cfg(test)]
@@ -313,20 +309,21 @@ mod tests {
         #[test]
         fn a_line_visits_the_cells_on_the_map_on_which_it_has_samples(
             ends in prop::array::uniform2([-30.0..50.0, -30.0..50.0_f64]),
-            density in 1.0..2.0,
+            halved in 0..=2_u32,
         ) {
             const SIDE: usize = 20;
             let ends = ends.map(Vector2::from);
             let mut visited = Vec::new();
-            for_cells(SIDE, ends, density, |at, is_new| if is_new { visited.push(at) });
+            let places = ends.map(|end| [end.x, end.y].map(|at| (at * PARTS) as i64));
+            for_cells(SIDE, places, halved, |at, is_new| if is_new { visited.push(at) });
             let off = ends[1] - ends[0];
-            let steps = density * off.amax();
+            let steps = f64::from(1 << halved) * off.amax();
             let samples = (0..=steps as u32).map(|step| ends[0] + f64::from(step) / steps * off);
             let cells: Vec<Vector2<f64>> = samples.collect();
             // At the border of two cells rounding decides.
             let is_inside = |at: &Vector2<f64>| at.iter().all(|at| (at - at.round()).abs() > 1e-6);
             for at in cells.iter().filter(|at| is_inside(at)) {
-                if let Some(index) = index_of(SIDE, cell_at(*at)) {
+                if let Some(index) = index_of(SIDE, [at.x, at.y].map(|at| at.floor() as i64)) {
                     prop_assert!(visited.contains(&index), "{at}");
                 }
             }

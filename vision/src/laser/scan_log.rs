@@ -79,11 +79,6 @@ impl PlacedScan<'_> {
     fn robot(&self) -> Point2<f64> {
         self.map_from_robot.translation.vector.into()
     }
-
-    /// Where its rays ended at an obstacle.
-    fn hits(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
-        self.rays.hits.iter().map(|hit| self.map_from_robot * hit)
-    }
 }
 
 /// The side of a square, in metres.
@@ -298,22 +293,21 @@ impl ScanLog {
             own_walls(own.into_iter().map(|scan| (&scan.walls[..], on_map(scan))), matching)
         });
         for pass in passes {
-            let part = own_pass.part_on_walls(pass.iter().flat_map(|scan| {
-                let map_from_robot = from_robot(&on_map(scan));
-                scan.rays.hits.iter().map(move |hit| map_from_robot * hit)
-            }));
-            let motion = if part.is_some_and(|part| part >= AGREES_WELL) {
-                *map_from_log
-            } else {
+            let on = |map_from_log: &Isometry2<f64>| -> (Vec<PlacedScan<'_>>, Vec<[i64; 2]>) {
+                let placed: Vec<_> = pass.iter().map(|scan| scan.placed(map_from_log)).collect();
+                let hits =
+                    own_pass.hits(placed.iter().map(|scan| (scan.rays, scan.map_from_robot)));
+                (placed, hits)
+            };
+            let (mut placed, mut hits) = on(map_from_log);
+            if own_pass.part_on_walls(&hits).is_none_or(|part| part < AGREES_WELL) {
                 let points = pass.iter().flat_map(|scan| {
                     let map_from_robot = from_robot(&on_map(scan));
                     scan.walls.iter().map(move |wall| wall.moved(&map_from_robot))
                 });
-                own_pass.correction(&walls, points) * map_from_log
-            };
-            let placed: Vec<PlacedScan<'_>> =
-                pass.iter().map(|scan| scan.placed(&motion)).collect();
-            match own_pass.widest_astray(placed.iter().flat_map(PlacedScan::hits), least) {
+                (placed, hits) = on(&(own_pass.correction(&walls, points) * map_from_log));
+            }
+            match own_pass.widest_astray(&hits, least) {
                 Some(widest) if widest < map.min_width => sure.extend(placed),
                 Some(_) => unsure.extend(placed),
                 None => {}
