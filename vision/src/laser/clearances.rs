@@ -81,13 +81,14 @@ fn squared_distances(columns: usize, cells: &[Cell], is_site: impl Fn(Cell) -> b
 }
 
 /// The distance to the nearest site in the same column.
-fn column_distances(columns: usize, cells: &[Cell], is_site: impl Fn(Cell) -> bool) -> Vec<i32> {
-    let far = (columns + cells.len() / columns.max(1)) as i32;
-    let mut distances: Vec<i32> =
-        cells.iter().map(|&cell| if is_site(cell) { 0 } else { far }).collect();
+fn column_distances(columns: usize, cells: &[Cell], is_site: impl Fn(Cell) -> bool) -> Vec<i16> {
     let rows = cells.len() / columns.max(1);
-    let step = |beside: &[i32], row: &mut [i32]| {
-        row.iter_mut().zip(beside).for_each(|(at, &beside)| *at = (*at).min(beside + 1));
+    let far = i16::try_from(columns + rows).unwrap_or(i16::MAX);
+    let mut distances: Vec<i16> =
+        cells.iter().map(|&cell| if is_site(cell) { 0 } else { far }).collect();
+    let step = |beside: &[i16], row: &mut [i16]| {
+        let farther = |&beside: &i16| beside.saturating_add(1);
+        row.iter_mut().zip(beside).for_each(|(at, beside)| *at = (*at).min(farther(beside)));
     };
     // Whole rows at a time are several cells at a time.
     for row in 1..rows {
@@ -104,12 +105,13 @@ fn column_distances(columns: usize, cells: &[Cell], is_site: impl Fn(Cell) -> bo
 /// The squared distances of cells of a row between two sites, or its ends: the lower envelope of the parabolas
 /// of their columns and of those of the sites.
 fn row_distances(
-    row: &[i32],
+    row: &[i16],
     between: Range<usize>,
     envelope: &mut Vec<(usize, usize)>,
     squared: &mut [u32],
 ) {
-    let value = |x: usize, site: usize| (x as i32 - site as i32).pow(2) + row[site].pow(2);
+    let down = |site: usize| i32::from(row[site]).pow(2);
+    let value = |x: usize, site: usize| (x as i32 - site as i32).pow(2) + down(site);
     // The columns on the envelope, each with the first place where it is the lowest.
     envelope.clear();
     for site in between.start.saturating_sub(1)..(between.end + 1).min(row.len()) {
@@ -122,7 +124,7 @@ fn row_distances(
             None => between.start,
             Some(&(below, _)) => {
                 let (one, other) = (below as i32, site as i32);
-                let off = other.pow(2) - one.pow(2) + row[site].pow(2) - row[below].pow(2);
+                let off = other.pow(2) - one.pow(2) + down(site) - down(below);
                 // Most are neighbours, and a shift is faster than a division.
                 let apart = other - one;
                 let last = if apart == 1 { off >> 1 } else { off.div_euclid(2 * apart) };

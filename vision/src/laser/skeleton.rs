@@ -24,8 +24,8 @@ impl Skeleton {
     pub(super) fn new(map: &Clearances, robot: Point2<f64>, params: &LaserParams) -> Option<Self> {
         let grid = &map.grid;
         let radius = params.map.min_width / 2.0 / grid.cell;
-        let is_way =
-            |at: usize| grid.cells[at] == Cell::Free && f64::from(map.wall[at]) >= radius * radius;
+        let least = (radius * radius).ceil() as u32;
+        let is_way = |at: usize| grid.cells[at] == Cell::Free && map.wall[at] >= least;
         let mut cells: Vec<bool> = (0..grid.cells.len()).map(is_way).collect();
         let start = nearest(&cells, grid, robot, params.map.beside_robot)?;
         let lengths = way_lengths(&mut cells, grid, start);
