@@ -15,6 +15,8 @@ mod smooth;
 pub use fault::{GraphError, ListError, clockwise_fault, opposite_fault, size_fault};
 pub use petgraph_traits::{EdgeView, PetgraphError, VisitedVertices};
 
+use std::hash::{Hash, Hasher};
+
 use crate::clone_in_place::clone_in_place;
 
 /// One end of an edge, numbered `0 .. 2m` in a graph with `m` edges.
@@ -51,7 +53,7 @@ pub const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 ///
 /// Two graphs are equal if they are isomorphic and have the same numbers.
 // paper: world.graph, world.embedding
-#[derive(Debug, PartialEq, Eq, Hash)]
+#[derive(Debug)]
 pub struct EmbeddedGraph {
     darts_of: Vec<Darts>,
     darts: Vec<DartPlace>,
@@ -59,8 +61,24 @@ pub struct EmbeddedGraph {
 
 clone_in_place!(EmbeddedGraph { darts_of, darts });
 
+// The vertices of the darts follow from `darts_of`.
+impl PartialEq for EmbeddedGraph {
+    fn eq(&self, other: &Self) -> bool {
+        self.darts_of == other.darts_of && self.opposites().eq(other.opposites())
+    }
+}
+
+impl Eq for EmbeddedGraph {}
+
+impl Hash for EmbeddedGraph {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.darts_of.hash(state);
+        self.opposites().for_each(|dart| dart.hash(state));
+    }
+}
+
 /// All that is known of a dart, side by side, so that a motion needs one look-up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug)]
 struct DartPlace {
     opposite: Dart,
     vertex: Vertex,
@@ -118,6 +136,10 @@ impl EmbeddedGraph {
             (numbers[one.at()], numbers[other.at()]) = (number, number);
         }
         numbers
+    }
+
+    fn opposites(&self) -> impl ExactSizeIterator<Item = Dart> + '_ {
+        self.darts.iter().map(|place| place.opposite)
     }
 
     #[inline]

@@ -46,7 +46,9 @@ impl MarkerTree {
         order.push(root);
         vertices[root.at()].distance = 0;
         let mut next = 0;
-        while let Some(&parent) = order.get(next) {
+        while order.len() < vertices.len()
+            && let Some(&parent) = order.get(next)
+        {
             next += 1;
             let distance = vertices[parent.at()].distance + 1;
             for dart in graph.darts_of(parent) {

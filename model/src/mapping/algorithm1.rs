@@ -271,28 +271,9 @@ impl Algorithm1Run {
     // paper: alg1.hypotheses
     fn list_hypotheses(&mut self, edge: Dart) -> Result<(), Contradiction> {
         let Self { walk: MapWalk { map, arrival, .. }, hypotheses, .. } = self;
+        let looks_like = |&dart: &Dart| dart != edge && map.expected(dart) == *arrival;
         hypotheses.clear();
-        let marked = arrival.sighting != Sighting::Nothing;
-        // The unexplored darts that were not looked at yet, besides the edge itself.
-        let mut left = map.unexplored_count() - 1;
-        for vertex in map.vertices().rev() {
-            if left == 0 {
-                break;
-            }
-            let here = map.unexplored_count_at(vertex);
-            if here == 0 {
-                continue;
-            }
-            left -= here - u32::from(map.vertex(edge) == vertex);
-            if map.degree(vertex) == arrival.degree && (vertex == START) == marked {
-                for dart in map.unexplored_at(vertex).rev() {
-                    // Without a marker, all darts of a vertex look alike.
-                    if dart != edge && (!marked || map.expected(dart) == *arrival) {
-                        hypotheses.push(dart);
-                    }
-                }
-            }
-        }
+        hypotheses.extend(map.unexplored().rev().filter(looks_like));
         if hypotheses.is_empty() {
             let (vertex, index) = (map.vertex(edge), map.index(edge));
             let perceived = *arrival;
@@ -303,7 +284,6 @@ impl Algorithm1Run {
         }
         if !self.to_marker.is_grown() {
             self.to_marker.grow_from(map, START);
-            self.to_marker.grow_whole(map);
         }
         if hypotheses.len() > 1 {
             let hops = |dart: Dart| self.to_marker.hops(map.vertex(dart));

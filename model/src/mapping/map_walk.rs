@@ -225,7 +225,7 @@ impl MapWalk {
         if let Some(dart) = self.map.unexplored_at(here).find(|dart| is_open(*dart)) {
             return Some(dart);
         }
-        self.from_robot.grow_from(&self.map, here);
+        self.from_robot.grow_from_unless_rooted(&self.map, here);
         self.from_robot.nearest_unexplored(&self.map, is_open)
     }
 
@@ -282,7 +282,6 @@ impl MapWalk {
     /// meets them.
     pub(super) fn write_preorder(&mut self, order: &mut Vec<Vertex>) {
         self.from_robot.grow_from(&self.map, self.map.vertex(self.robot));
-        self.from_robot.grow_whole(&self.map);
         self.from_robot.preorder(&self.map, order);
     }
 

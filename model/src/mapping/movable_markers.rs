@@ -429,7 +429,6 @@ impl MovableMarkerRun {
         let first = marked.next()?;
         let Some(second) = marked.next() else { return Some(first.0) };
         from_robot.grow_from(map, here);
-        from_robot.grow_whole(map);
         let hops =
             |(_, end): &(usize, &UnknownEnd)| (from_robot.hops(map.vertex(end.edge)), end.edge);
         [first, second].into_iter().chain(marked).min_by_key(hops).map(|(at, _)| at)

@@ -14,11 +14,11 @@ use crate::{
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub struct PartialMap {
     known: EmbeddedGraph,
-    unexplored_at: Vec<u32>,
-    unexplored: u32,
+    /// U, in the order of the numbers.
+    unexplored: Vec<Dart>,
 }
 
-clone_in_place!(PartialMap { known, unexplored_at, unexplored });
+clone_in_place!(PartialMap { known, unexplored });
 
 /// The facing dart, along which the marker points.
 pub const FACING: Dart = Dart(0);
@@ -28,27 +28,23 @@ pub(super) const START: Vertex = Vertex(0);
 
 impl PartialMap {
     pub(super) fn new() -> Self {
-        Self { known: EmbeddedGraph::unfinished(), unexplored_at: Vec::new(), unexplored: 0 }
+        Self { known: EmbeddedGraph::unfinished(), unexplored: Vec::new() }
     }
 
     pub(super) fn clear(&mut self) {
         self.known.clear();
-        self.unexplored_at.clear();
-        self.unexplored = 0;
+        self.unexplored.clear();
     }
 
     pub(super) fn add_vertex(&mut self, degree: u32) -> Vertex {
-        self.unexplored_at.push(degree);
-        self.unexplored += degree;
-        self.known.add_vertex(degree)
+        let vertex = self.known.add_vertex(degree);
+        self.unexplored.extend(self.known.darts_of(vertex));
+        vertex
     }
 
     pub(super) fn join(&mut self, one: Dart, other: Dart) {
         self.known.join(one, other);
-        for end in [one, other] {
-            self.unexplored_at[self.known.vertex(end).at()] -= 1;
-        }
-        self.unexplored -= 2;
+        self.unexplored.retain(|&dart| dart != one && dart != other);
     }
 
     pub fn vertex_count(&self) -> usize {
@@ -62,17 +58,17 @@ impl PartialMap {
 
     /// The number of unexplored darts: the size of U.
     pub fn unexplored_count(&self) -> u32 {
-        self.unexplored
+        self.unexplored.len() as u32
     }
 
     #[inline]
     pub fn unexplored_is_empty(&self) -> bool {
-        self.unexplored == 0
+        self.unexplored.is_empty()
     }
 
     /// U: the unexplored darts, in the order of their numbers.
-    pub fn unexplored(&self) -> impl Iterator<Item = Dart> + '_ {
-        self.known.vertices().flat_map(|vertex| self.unexplored_at(vertex))
+    pub fn unexplored(&self) -> impl DoubleEndedIterator<Item = Dart> + '_ {
+        self.unexplored.iter().copied()
     }
 
     #[inline]
@@ -88,12 +84,12 @@ impl PartialMap {
 
     #[inline]
     pub(super) fn unexplored_count_at(&self, vertex: Vertex) -> u32 {
-        self.unexplored_at[vertex.at()]
+        self.unexplored_at(vertex).count() as u32
     }
 
     #[inline]
     pub(crate) fn is_frontier(&self, vertex: Vertex) -> bool {
-        self.unexplored_at[vertex.at()] > 0
+        self.unexplored_at(vertex).next().is_some()
     }
 
     /// The other end of an explored dart; `None` for an unexplored one.
@@ -157,7 +153,7 @@ impl PartialMap {
 
     /// The map as an embedded graph, once nothing is unexplored. Its facing dart is [`FACING`].
     pub fn complete(&self) -> Option<&EmbeddedGraph> {
-        (self.unexplored == 0 && self.vertex_count() > 0).then_some(&self.known)
+        (self.unexplored_is_empty() && self.vertex_count() > 0).then_some(&self.known)
     }
 
     /// The first dart of a vertex: the one by which it was first entered.

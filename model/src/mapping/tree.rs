@@ -8,18 +8,17 @@ use crate::{
     percept::Door,
 };
 
-/// A breadth-first tree of the known map, grown on demand.
+/// A breadth-first tree of the known map.
 #[derive(Debug, Default)]
 pub(super) struct BreadthFirstTree {
     /// The vertices of the map; empty if there is no tree.
     vertices: Vec<TreeVertex>,
-    /// The vertices in the tree in the order in which they were reached.
+    root: Option<Vertex>,
+    /// Scratch: the vertices in the order in which they were reached.
     reached: Vec<Vertex>,
-    /// The number of `reached` vertices with all their neighbours in the tree.
-    grown: usize,
 }
 
-clone_in_place!(BreadthFirstTree { vertices, reached, grown });
+clone_in_place!(BreadthFirstTree { vertices, root; scratch reached });
 
 #[derive(Clone, Copy, Debug)]
 struct TreeVertex {
@@ -32,54 +31,47 @@ const UNREACHED: u32 = u32::MAX;
 
 impl BreadthFirstTree {
     pub(super) fn grow_from(&mut self, map: &PartialMap, root: Vertex) {
-        self.vertices.clear();
-        self.vertices.resize(map.vertex_count(), TreeVertex { hops: UNREACHED, up: Dart(0) });
-        self.reached.clear();
-        self.grown = 0;
-        self.vertices[root.at()].hops = 0;
-        self.reached.push(root);
+        let Self { vertices, reached, .. } = self;
+        vertices.clear();
+        vertices.resize(map.vertex_count(), TreeVertex { hops: UNREACHED, up: Dart(0) });
+        vertices[root.at()].hops = 0;
+        reached.clear();
+        reached.push(root);
+        let mut next = 0;
+        while reached.len() < vertices.len()
+            && let Some(&vertex) = reached.get(next)
+        {
+            next += 1;
+            let hops = vertices[vertex.at()].hops + 1;
+            for far in map.darts_of(vertex).filter_map(|dart| map.opposite(dart)) {
+                let neighbour = map.vertex(far);
+                let place = &mut vertices[neighbour.at()];
+                if place.hops == UNREACHED {
+                    *place = TreeVertex { hops, up: far };
+                    reached.push(neighbour);
+                }
+            }
+        }
+        self.root = Some(root);
     }
 
     #[inline]
     pub(super) fn clear(&mut self) {
         self.vertices.clear();
-        self.reached.clear();
+        self.root = None;
     }
 
     #[inline]
     pub(super) fn is_grown(&self) -> bool {
-        !self.reached.is_empty()
+        self.root.is_some()
     }
 
-    /// Begins a new tree, unless this is one of the map, from that root.
+    /// Grows a new tree, unless this is one of the map, from that root.
+    #[inline]
     pub(super) fn grow_from_unless_rooted(&mut self, map: &PartialMap, root: Vertex) {
-        if self.reached.first() != Some(&root) || self.vertices.len() != map.vertex_count() {
+        if self.root != Some(root) || self.vertices.len() != map.vertex_count() {
             self.grow_from(map, root);
         }
-    }
-
-    /// Adds the neighbours of one more vertex; `false` if there is none.
-    fn grow(&mut self, map: &PartialMap) -> bool {
-        let Some(&vertex) = self.reached.get(self.grown) else {
-            return false;
-        };
-        self.grown += 1;
-        let hops = self.hops(vertex) + 1;
-        for dart in map.darts_of(vertex) {
-            if let Some(far) = map.opposite(dart) {
-                let neighbour = map.vertex(far);
-                let place = &mut self.vertices[neighbour.at()];
-                if place.hops == UNREACHED {
-                    *place = TreeVertex { hops, up: far };
-                    self.reached.push(neighbour);
-                }
-            }
-        }
-        true
-    }
-
-    pub(super) fn grow_whole(&mut self, map: &PartialMap) {
-        while self.grow(map) {}
     }
 
     /// Adds a vertex that was just added to the map with one edge. The tree stays breadth-first.
@@ -100,27 +92,13 @@ impl BreadthFirstTree {
     /// Of the unexplored darts that are open, the one that is fewest hops from the root; then of the vertex discovered
     /// first; then with the lowest index. `None` if there is none.
     pub(super) fn nearest_unexplored(
-        &mut self,
+        &self,
         map: &PartialMap,
         is_open: impl Fn(Dart) -> bool,
     ) -> Option<Dart> {
-        let mut level = 0;
-        loop {
-            let end = self.reached.len();
-            let frontier =
-                self.reached[level..end].iter().filter(|vertex| map.is_frontier(**vertex));
-            let open = frontier.flat_map(|vertex| map.unexplored_at(*vertex));
-            if let Some(dart) = open.filter(|dart| is_open(*dart)).min() {
-                return Some(dart);
-            }
-            level = end;
-            while self.grown < end {
-                self.grow(map);
-            }
-            if self.reached.len() == end {
-                return None;
-            }
-        }
+        // Of equals the first is returned.
+        let open = map.unexplored().filter(|dart| is_open(*dart));
+        open.min_by_key(|dart| self.hops(map.vertex(*dart)))
     }
 
     /// The number of edges from a vertex to the root; the vertex is in the tree.
@@ -130,13 +108,7 @@ impl BreadthFirstTree {
     }
 
     /// Writes the darts of the path from the root to `target`.
-    pub(super) fn path_from_root(
-        &mut self,
-        map: &PartialMap,
-        target: Vertex,
-        path: &mut Vec<Dart>,
-    ) {
-        while self.hops(target) == UNREACHED && self.grow(map) {}
+    pub(super) fn path_from_root(&self, map: &PartialMap, target: Vertex, path: &mut Vec<Dart>) {
         path.clear();
         let mut vertex = target;
         while self.hops(vertex) != 0 {
@@ -152,7 +124,7 @@ impl BreadthFirstTree {
     /// Writes the vertices of the tree in preorder, with the darts of a vertex in index order.
     pub(super) fn preorder(&self, map: &PartialMap, order: &mut Vec<Vertex>) {
         order.clear();
-        let mut ahead: Vec<_> = self.reached.first().copied().into_iter().collect();
+        let mut ahead: Vec<_> = self.root.into_iter().collect();
         while let Some(vertex) = ahead.pop() {
             order.push(vertex);
             for far in map.darts_of(vertex).rev().filter_map(|dart| map.opposite(dart)) {

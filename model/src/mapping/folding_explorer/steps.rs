@@ -216,7 +216,6 @@ impl FoldingRun {
     fn find_ways_to_marker(&mut self) {
         if !mem::replace(&mut self.to_marker_is_current, true) {
             self.to_marker.grow_from(&self.walk.map, START);
-            self.to_marker.grow_whole(&self.walk.map);
         }
     }
 }

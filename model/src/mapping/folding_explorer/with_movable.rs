@@ -185,7 +185,6 @@ impl WithMovableRun {
             }
         };
         self.to_base.grow_from(&run.walk.map, self.base);
-        self.to_base.grow_whole(&run.walk.map);
         run.list_tests(pending, most, &self.to_base);
         let mut tests: Vec<_> = run.tests.iter().map(|test| test.0).collect();
         tests.sort_unstable();
@@ -280,7 +279,6 @@ impl WithMovableRun {
     ) -> Mapped<W> {
         let HypothesisTest { edge, hypothesis, .. } = test;
         self.to_base.grow_from(&self.run.walk.map, self.base);
-        self.to_base.grow_whole(&self.run.walk.map);
         let (to_base, base) = (&self.to_base, self.base);
         let is_confirmed =
             self.run.walk_to_root(test, to_base, world, |map, believed, perceived, world| {
