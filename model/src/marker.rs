@@ -147,26 +147,13 @@ impl MarkerKind {
             ),
         }
     }
-}
 
-impl Marker for MarkerKind {
-    fn name(&self) -> &'static str {
-        self.texts().0
-    }
-
-    fn about(&self) -> &'static str {
-        self.texts().1
-    }
-
-    #[inline]
-    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
+    /// What a marker other than [`Directional`] adds.
+    #[inline(never)]
+    fn other_sighting(self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
         let is_here = |dart| graph.vertex(dart) == graph.vertex(pose);
         match self {
             Undirected if is_here(facing) => Sighting::Lying(1),
-            Directional if is_here(facing) => {
-                let (from, to) = (graph.index(pose), graph.index(facing));
-                Sighting::Pointing(Door::between(from, to, graph.degree_around(pose)))
-            }
             UndirectedEdge if ends(graph, facing).contains(&pose) => Sighting::Passed,
             DirectedEdge if pose == facing => Sighting::PassedAgainst,
             DirectedEdge if pose == graph.opposite(facing) => Sighting::PassedAlong,
@@ -180,6 +167,29 @@ impl Marker for MarkerKind {
             },
             _ => Sighting::Nothing,
         }
+    }
+}
+
+impl Marker for MarkerKind {
+    fn name(&self) -> &'static str {
+        self.texts().0
+    }
+
+    fn about(&self) -> &'static str {
+        self.texts().1
+    }
+
+    #[inline]
+    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
+        // A check makes billions of moves with this marker. Only this part is inlined.
+        if *self != Directional {
+            return self.other_sighting(graph, facing, pose);
+        }
+        if graph.vertex(facing) != graph.vertex(pose) {
+            return Sighting::Nothing;
+        }
+        let (from, to) = (graph.index(pose), graph.index(facing));
+        Sighting::Pointing(Door::between(from, to, graph.degree_around(pose)))
     }
 
     fn first_alike(&self, graph: &EmbeddedGraph, facing: Dart) -> Dart {

@@ -64,7 +64,8 @@ clone_in_place!(EmbeddedGraph { darts_of, darts });
 // The vertices of the darts follow from `darts_of`.
 impl PartialEq for EmbeddedGraph {
     fn eq(&self, other: &Self) -> bool {
-        self.darts_of == other.darts_of && self.opposites().eq(other.opposites())
+        self.darts_of == other.darts_of
+            && self.opposites().zip(other.opposites()).all(|(one, other)| one == other)
     }
 }
 

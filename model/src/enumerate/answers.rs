@@ -68,7 +68,7 @@ impl Draft {
             return Answers { free: 0, degrees: degree_bits(self.start_degrees()) };
         };
         let mut answers = Answers {
-            free: if self.can_join() { self.partners(dart.at()) } else { 0 },
+            free: if self.can_join() { self.partners(dart) } else { 0 },
             degrees: degree_bits(self.new_degrees()),
         };
         let mut untried = if self.can_get_stuck() { answers } else { Answers::default() };
@@ -89,30 +89,25 @@ impl Draft {
     #[inline]
     pub(crate) fn decide(&mut self, dart: Option<Dart>, answer: Answer) {
         let (entry, word) = match answer {
-            Answer::Free(other) => (usize::from(other), other),
+            Answer::Free(other) => (Dart(other.into()), other),
             Answer::NewVertex(degree) => {
-                let entry = self.darts;
+                let entry = Dart(self.graph.dart_count() as u32);
                 self.add_vertex(degree.into());
-                self.graph.add_vertex(degree.into());
                 (entry, new_vertex(degree))
             }
         };
         if let Some(dart) = dart {
-            self.join(dart.at(), entry, word);
-            self.graph.join(dart, Dart(entry as u32));
+            self.join(dart, entry, word);
         }
     }
 
     #[inline]
     pub(crate) fn undo(&mut self, dart: Option<Dart>, answer: Answer) {
         if let Some(dart) = dart {
-            let other = self.opposite[dart.at()];
-            self.unjoin(dart.at(), other.into());
-            self.graph.unjoin(dart, Dart(other.into()));
+            self.unjoin(dart, self.graph.opposite(dart));
         }
         if let Answer::NewVertex(_) = answer {
             self.remove_vertex();
-            self.graph.remove_vertex();
         }
     }
 

@@ -6,15 +6,12 @@
 use std::ops::ControlFlow;
 
 use super::{Answer, Answers, Class, Each, EnumeratedGraph};
-use crate::embedded_graph::{Dart, EmbeddedGraph};
+use crate::embedded_graph::{Dart, EmbeddedGraph, Vertex};
 
 /// The most edges that a draft can have: its darts are the bits of a `u64`.
 pub(super) const MAX_EDGES: usize = 32;
 
 pub(super) const DARTS: usize = 2 * MAX_EDGES;
-
-/// The opposite of a free dart.
-pub(super) const FREE: u8 = u8::MAX;
 
 /// The number of edges in the beginnings that divide an enumeration into parts.
 pub(super) const PREFIX_EDGES: usize = 4;
@@ -34,17 +31,13 @@ pub(crate) struct Draft {
     class: Class,
     each: Each,
     target: usize,
-    pub(super) opposite: [u8; DARTS],
-    pub(super) vertex: [u8; DARTS],
-    /// The first dart of each vertex, and its degree.
-    pub(super) first: [u8; MAX_EDGES + 1],
-    pub(super) degree: [u8; MAX_EDGES + 1],
-    /// For each vertex, as bits, itself and those joined to it: a simple graph lets none of these be
-    /// joined to it again.
-    adjacent: [u64; MAX_EDGES + 1],
-    vertices: usize,
-    pub(super) darts: usize,
+    /// What is decided. The other darts have no opposite.
+    pub(super) graph: EmbeddedGraph,
+    /// They, as bits.
     free: u64,
+    /// For each vertex, as bits, itself and those joined to it: a simple graph lets none of these be
+    /// joined to it again. Kept in the classes of simple graphs only.
+    adjacent: [u64; MAX_EDGES + 1],
     /// The code so far: a word an edge, as in `isomorphism::StartCode`, but in a byte.
     pub(super) words: [u8; MAX_EDGES],
     pub(super) edges: usize,
@@ -55,8 +48,6 @@ pub(crate) struct Draft {
     /// the class `planar` only. A dart that is not free keeps its own, to be free again.
     next_in_face: [u8; DARTS],
     last_in_face: [u8; DARTS],
-    /// The same as an embedded graph with free darts. It lacks an edge that is only tried.
-    pub(super) graph: EmbeddedGraph,
 }
 
 /// The decisions that led from a draft to one with more edges, and the answers that are not tried yet.
@@ -104,7 +95,7 @@ impl Decisions {
             } else {
                 let dart = draft.lowest_free();
                 // The start vertex comes first.
-                let is_open = dart.is_some() || draft.vertices == 0;
+                let is_open = dart.is_some() || draft.graph.vertex_count() == 0;
                 let untried = if is_open { draft.answers(dart) } else { Answers::default() };
                 (dart, untried, draft.rivals)
             };
@@ -135,6 +126,10 @@ fn can_end(free: usize, edges: usize) -> bool {
     (free == 0) == (edges == 0) && free <= 2 * edges
 }
 
+fn bit(dart: Dart) -> u64 {
+    1 << dart.0
+}
+
 /// The numbers of the bits that are set, from the lowest.
 pub(super) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
@@ -151,33 +146,27 @@ impl Draft {
             class,
             each,
             target,
-            opposite: [FREE; DARTS],
-            vertex: [0; DARTS],
-            first: [0; MAX_EDGES + 1],
-            degree: [0; MAX_EDGES + 1],
-            adjacent: [0; MAX_EDGES + 1],
-            vertices: 0,
-            darts: 0,
+            graph: EmbeddedGraph::unfinished(),
             free: 0,
+            adjacent: [0; MAX_EDGES + 1],
             words: [0; MAX_EDGES],
             edges: 0,
             rivals: 0,
             next_in_face: [0; DARTS],
             last_in_face: [0; DARTS],
-            graph: EmbeddedGraph::unfinished(),
         }
     }
 
     pub(super) fn prefix(&self) -> Prefix {
         let mut words = [0; PREFIX_EDGES];
         words[..self.edges].copy_from_slice(&self.words[..self.edges]);
-        Prefix { degree: self.degree[0], words, edges: self.edges as u8 }
+        Prefix { degree: self.start_degree() as u8, words, edges: self.edges as u8 }
     }
 
     pub(super) fn resume(&mut self, prefix: Prefix) {
         self.decide(None, Answer::NewVertex(prefix.degree));
         for &word in &prefix.words[..prefix.edges as usize] {
-            let known = usize::from(word) < self.darts;
+            let known = usize::from(word) < self.graph.dart_count();
             let answer =
                 if known { Answer::Free(word) } else { Answer::NewVertex(new_vertex(word)) };
             self.decide(self.lowest_free(), answer);
@@ -201,9 +190,13 @@ impl Draft {
         }
     }
 
+    fn start_degree(&self) -> usize {
+        self.graph.degree(Vertex(0)) as usize
+    }
+
     fn highest_degree(&self) -> usize {
         let of_root = match self.each {
-            Each::World if self.vertices > 0 => self.degree[0] as usize,
+            Each::World if self.graph.vertex_count() > 0 => self.start_degree(),
             _ => 2 * self.target,
         };
         of_root.min(self.class.max_degree() as usize)
@@ -241,22 +234,23 @@ impl Draft {
     }
 
     /// The free darts, as bits, to which the class lets a dart be joined.
-    pub(super) fn partners(&self, dart: usize) -> u64 {
-        let mut partners = self.free & !(1 << dart);
+    pub(super) fn partners(&self, dart: Dart) -> u64 {
+        let mut partners = self.free & !bit(dart);
         if self.class.is_simple() {
-            let vertex = self.vertex[dart] as usize;
-            for neighbour in bits(self.adjacent[vertex]) {
-                partners &= !self.darts_of(neighbour);
+            for neighbour in bits(self.adjacent[self.graph.vertex(dart).at()]) {
+                partners &= !self.darts_of(Vertex(neighbour as u32));
             }
         }
         if self.class == Class::Planar {
-            partners &= self.free_in_face(dart);
+            partners &= self.free_in_face(dart.at());
         }
         partners
     }
 
-    fn darts_of(&self, vertex: usize) -> u64 {
-        (u64::MAX >> (DARTS - self.degree[vertex] as usize)) << self.first[vertex]
+    /// The darts of a vertex, as bits.
+    fn darts_of(&self, vertex: Vertex) -> u64 {
+        let darts = self.graph.darts_of(vertex);
+        (u64::MAX >> (DARTS - darts.len())) << self.graph.first_dart(vertex).0
     }
 
     /// The free darts, as bits, that stick out into the same face as a free dart, and it too. In the class
@@ -336,78 +330,68 @@ impl Draft {
     fn edges_needed(&self, free: u64) -> usize {
         let (mut rest, mut most_at_one) = (free, 0);
         while rest != 0 {
-            let here = self.darts_of(self.vertex[rest.trailing_zeros() as usize] as usize);
+            let here = self.darts_of(self.graph.vertex(Dart(rest.trailing_zeros())));
             most_at_one = most_at_one.max((rest & here).count_ones());
             rest &= !here;
         }
         free.count_ones().div_ceil(2).max(most_at_one) as usize
     }
 
-    pub(super) fn clockwise(&self, dart: usize) -> usize {
-        let vertex = self.vertex[dart] as usize;
-        let first = self.first[vertex] as usize;
-        if dart + 1 == first + self.degree[vertex] as usize { first } else { dart + 1 }
-    }
-
-    pub(super) fn add_vertex(&mut self, degree: usize) {
-        let new = self.vertices;
-        self.first[new] = self.darts as u8;
-        self.degree[new] = degree as u8;
-        self.adjacent[new] = 1 << new;
-        self.vertex[self.darts..self.darts + degree].fill(new as u8);
-        if self.class == Class::Planar {
-            let first = self.darts as u8;
-            let end = first + degree as u8;
-            for dart in first..end {
-                self.follow(dart, if dart + 1 == end { first } else { dart + 1 });
-            }
-        }
-        self.vertices += 1;
-        self.darts += degree;
-        self.free |= self.darts_of(new);
+    pub(super) fn add_vertex(&mut self, degree: u32) {
+        let new = self.graph.add_vertex(degree);
+        let darts = self.darts_of(new);
+        self.free |= darts;
         // Only a vertex with as many darts can rival the start, and dart 0 is no rival to itself.
-        if self.each == Each::World && degree == self.degree[0] as usize {
-            self.rivals |= self.darts_of(new) & !1;
+        if self.each == Each::World && degree as usize == self.start_degree() {
+            self.rivals |= darts & !1;
+        }
+        if self.class.is_simple() {
+            self.adjacent[new.at()] = 1 << new.0;
+        }
+        if self.class == Class::Planar {
+            for dart in self.graph.darts_of(new) {
+                self.follow(dart.0 as u8, self.graph.clockwise(dart).0 as u8);
+            }
         }
     }
 
     pub(super) fn remove_vertex(&mut self) {
-        self.vertices -= 1;
-        let darts = self.darts_of(self.vertices);
-        self.free &= !darts;
-        self.rivals &= !darts;
-        self.darts -= self.degree[self.vertices] as usize;
+        if let Some(last) = self.graph.vertices().next_back() {
+            let darts = self.darts_of(last);
+            self.free &= !darts;
+            self.rivals &= !darts;
+        }
+        self.graph.remove_vertex();
     }
 
-    pub(super) fn join(&mut self, one: usize, other: usize, word: u8) {
-        self.opposite[one] = other as u8;
-        self.opposite[other] = one as u8;
-        self.free &= !(1 << one);
-        self.free &= !(1 << other);
-        let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
-        self.adjacent[from] |= 1 << to;
-        self.adjacent[to] |= 1 << from;
+    pub(super) fn join(&mut self, one: Dart, other: Dart, word: u8) {
+        self.graph.join(one, other);
+        self.free &= !(bit(one) | bit(other));
         self.words[self.edges] = word;
         self.edges += 1;
+        if self.class.is_simple() {
+            let [from, to] = [one, other].map(|dart| self.graph.vertex(dart));
+            self.adjacent[from.at()] |= 1 << to.0;
+            self.adjacent[to.at()] |= 1 << from.0;
+        }
         if self.class == Class::Planar {
-            self.join_in_face(one, other);
+            self.join_in_face(one.at(), other.at());
         }
     }
 
-    pub(super) fn unjoin(&mut self, one: usize, other: usize) {
+    pub(super) fn unjoin(&mut self, one: Dart, other: Dart) {
         if self.class == Class::Planar {
-            self.unjoin_in_face(one, other);
+            self.unjoin_in_face(one.at(), other.at());
         }
-        self.opposite[one] = FREE;
-        self.opposite[other] = FREE;
-        self.free |= 1 << one;
-        self.free |= 1 << other;
-        let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
-        if from != to {
-            self.adjacent[from] &= !(1 << to);
-            self.adjacent[to] &= !(1 << from);
+        // In a simple graph it is the only edge between them.
+        if self.class.is_simple() {
+            let [from, to] = [one, other].map(|dart| self.graph.vertex(dart));
+            self.adjacent[from.at()] &= !(1 << to.0);
+            self.adjacent[to.at()] &= !(1 << from.0);
         }
         self.edges -= 1;
+        self.free |= bit(one) | bit(other);
+        self.graph.unjoin(one, other);
     }
 
     pub(super) fn show(
@@ -424,28 +408,27 @@ mod tests {
     use super::*;
 
     /// Vertices of these degrees, edges between some of their darts, and so many edges left.
-    fn grown(class: Class, degrees: &[usize], edges: &[(usize, usize)], left: usize) -> Draft {
+    fn grown(class: Class, degrees: &[u32], edges: &[(u32, u32)], left: usize) -> Draft {
         let mut draft = Draft::empty(Each::Start, class, edges.len() + left);
         for &degree in degrees {
             draft.add_vertex(degree);
         }
         for &(one, other) in edges {
-            draft.join(one, other, other as u8);
+            draft.join(Dart(one), Dart(other), other as u8);
         }
         draft
     }
 
     /// The darts of a face that are free, along its border.
-    fn free_along_the_border(draft: &Draft, dart: usize) -> u64 {
+    fn free_along_the_border(draft: &Draft, dart: Dart) -> u64 {
         let mut found = 0;
         let mut at = dart;
         loop {
-            if draft.opposite[at] == FREE {
-                found |= 1 << at;
-            } else {
-                at = draft.opposite[at] as usize;
+            match draft.graph.joined(at) {
+                None => found |= bit(at),
+                Some(far) => at = far,
             }
-            at = draft.clockwise(at);
+            at = draft.graph.clockwise(at);
             if at == dart {
                 return found;
             }
@@ -459,7 +442,7 @@ mod tests {
             let mut seen = 0;
             let mut compare = |draft: &Draft| {
                 for dart in bits(draft.free) {
-                    let along = free_along_the_border(draft, dart);
+                    let along = free_along_the_border(draft, Dart(dart as u32));
                     assert_eq!(draft.free_in_face(dart), along);
                     let last = draft.last_in_face[dart] as usize;
                     assert_eq!(draft.next_in_face[last] as usize, dart);
@@ -483,7 +466,7 @@ mod tests {
     /// An edge uses up two free darts, but not two at one vertex.
     #[test]
     fn free_darts_at_one_vertex_need_an_edge_each() {
-        let needed = |degrees: &[usize]| {
+        let needed = |degrees: &[u32]| {
             let draft = grown(Class::Simple, degrees, &[], 0);
             draft.edges_needed(draft.free)
         };

@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use super::draft::{DARTS, Draft, FREE, new_vertex};
+use super::draft::{DARTS, Draft, new_vertex};
+use crate::{embedded_graph::Dart, percept::Door};
 
 const UNMET: u8 = u8::MAX;
 
@@ -13,7 +14,7 @@ impl Draft {
     pub(super) fn may_be_least(&mut self) -> bool {
         let mut open = self.rivals;
         while open != 0 {
-            let rival = open.trailing_zeros() as usize;
+            let rival = Dart(open.trailing_zeros());
             let bit = open & open.wrapping_neg();
             open ^= bit;
             match self.compare(rival) {
@@ -26,48 +27,43 @@ impl Draft {
     }
 
     /// The code of a rival against that of dart 0; equal as long as it is not decided.
-    fn compare(&self, rival: usize) -> Ordering {
-        let other = self.opposite[rival];
-        if other == FREE {
+    fn compare(&self, rival: Dart) -> Ordering {
+        let Some(other) = self.graph.joined(rival) else {
             return Ordering::Equal;
-        }
+        };
         // The first word alone decides most cases.
-        let vertex = self.vertex[rival] as usize;
-        let far = self.vertex[other as usize] as usize;
-        let word = if far == vertex {
-            let degree = self.degree[vertex];
-            let rival = rival as u8;
-            if other > rival { other - rival } else { other + degree - rival }
+        let degree = self.graph.degree_around(rival);
+        let word = if self.graph.vertex(other) == self.graph.vertex(rival) {
+            Door::between(rival.0, other.0, degree).0 as u8
         } else {
-            new_vertex(self.degree[far])
+            new_vertex(self.graph.degree_around(other) as u8)
         };
         word.cmp(&self.words[0]).then_with(|| self.compare_throughout(rival))
     }
 
-    fn compare_throughout(&self, rival: usize) -> Ordering {
+    fn compare_throughout(&self, rival: Dart) -> Ordering {
         let mut number = [UNMET; DARTS];
-        let mut order = [0; DARTS];
+        let mut order = [Dart(0); DARTS];
         let mut met = 0;
-        let mut meet = |entry: usize, number: &mut [u8; DARTS], order: &mut [u8; DARTS]| {
+        let mut meet = |entry: Dart, number: &mut [u8; DARTS], order: &mut [Dart; DARTS]| {
             let mut dart = entry;
-            let degree = self.degree[self.vertex[entry] as usize];
+            let degree = self.graph.degree_around(entry);
             for _ in 0..degree {
-                number[dart] = met as u8;
-                order[met] = dart as u8;
+                number[dart.at()] = met as u8;
+                order[met] = dart;
                 met += 1;
-                dart = self.clockwise(dart);
+                dart = self.graph.clockwise(dart);
             }
-            new_vertex(degree)
+            new_vertex(degree as u8)
         };
         meet(rival, &mut number, &mut order);
         let mut place = 0;
         for this in 0..self.edges * 2 {
-            let other = self.opposite[order[this] as usize];
-            if other == FREE {
+            let Some(other) = self.graph.joined(order[this]) else {
                 return Ordering::Equal;
-            }
-            let word = match number[other as usize] {
-                UNMET => meet(other as usize, &mut number, &mut order),
+            };
+            let word = match number[other.at()] {
+                UNMET => meet(other, &mut number, &mut order),
                 earlier if (earlier as usize) < this => continue,
                 later => later,
             };

@@ -108,6 +108,10 @@ impl Explorer for Algorithm1Run {
         Ok(if self.is_at_line_8() {
             self.hypotheses.len().checked_sub(1).map(MappingChoice::Hypothesis)
         } else {
+            // The tree from the marker is that from a robot at the marker.
+            if self.to_marker.is_grown() && self.map().vertex(self.robot()) == START {
+                self.walk.from_robot.clone_from(&self.to_marker);
+            }
             self.walk.nearest_unexplored().map(MappingChoice::Edge)
         })
     }
@@ -271,9 +275,17 @@ impl Algorithm1Run {
     // paper: alg1.hypotheses
     fn list_hypotheses(&mut self, edge: Dart) -> Result<(), Contradiction> {
         let Self { walk: MapWalk { map, arrival, .. }, hypotheses, .. } = self;
-        let looks_like = |&dart: &Dart| dart != edge && map.expected(dart) == *arrival;
+        let marked = arrival.sighting != Sighting::Nothing;
         hypotheses.clear();
-        hypotheses.extend(map.unexplored().rev().filter(looks_like));
+        for dart in map.unexplored().rev() {
+            let vertex = map.vertex(dart);
+            if map.degree(vertex) == arrival.degree && (vertex == START) == marked && dart != edge {
+                // Without a marker, all darts of a vertex look alike.
+                if !marked || map.expected(dart) == *arrival {
+                    hypotheses.push(dart);
+                }
+            }
+        }
         if hypotheses.is_empty() {
             let (vertex, index) = (map.vertex(edge), map.index(edge));
             let perceived = *arrival;

@@ -222,7 +222,8 @@ impl MapWalk {
         }
         let here = self.map.vertex(pose);
         // Often it is at the robot's own vertex, and no tree is needed.
-        if let Some(dart) = self.map.unexplored_at(here).find(|dart| is_open(*dart)) {
+        let is_here = |dart: &Dart| self.map.vertex(*dart) == here;
+        if let Some(dart) = self.map.unexplored().filter(is_here).find(|dart| is_open(*dart)) {
             return Some(dart);
         }
         self.from_robot.grow_from_unless_rooted(&self.map, here);

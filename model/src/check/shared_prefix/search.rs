@@ -1,6 +1,6 @@
 //! The search through all answers of a world that is decided while the robot explores it.
 
-use std::ops::ControlFlow;
+use std::{mem, ops::ControlFlow};
 
 use super::{
     LazyWorld,
@@ -96,9 +96,14 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
 
     fn restore(&mut self, step: usize) {
         let Self { world, explorer, saved, .. } = self;
-        explorer.clone_from(&saved[step].explorer);
-        self.choice = saved[step].choice;
-        world.set_robot(&saved[step].robot);
+        let saved = &mut saved[step];
+        if world.may_go_back_to(step) {
+            explorer.clone_from(&saved.explorer);
+        } else {
+            mem::swap(explorer, &mut saved.explorer);
+        }
+        self.choice = saved.choice;
+        world.set_robot(&saved.robot);
         world.step = step;
     }
 

@@ -104,6 +104,12 @@ impl<A: Aid> LazyWorld<A> {
         self.draft.edges_left() > 1
     }
 
+    /// Whether an answer of this step, which is the latest with a decision, is left, or may be after it is repeated.
+    pub(super) fn may_go_back_to(&self, step: usize) -> bool {
+        let mut decisions = self.decisions.iter().rev().take_while(|decision| decision.step == step);
+        self.may_branch() || decisions.any(|decision| decision.left.count() > 0)
+    }
+
     pub(super) fn answers(&self) -> Vec<Answer> {
         self.decisions.iter().map(|decision| decision.answer).collect()
     }
@@ -197,7 +203,9 @@ impl<A: Aid> World for LazyWorld<A> {
         Ok(Percept { degree, sighting: sighting.unwrap_or(Sighting::Nothing) })
     }
 
-    #[inline]
+    // As in `MapWalk::go`.
+    #[expect(clippy::inline_always, reason = "see above")]
+    #[inline(always)]
     fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
         if self.robot.moves >= self.bound {
             return Err(RefusedAction::OutOfMoves { bound: self.bound });
