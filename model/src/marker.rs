@@ -147,13 +147,22 @@ impl MarkerKind {
             ),
         }
     }
+}
 
-    /// What a marker other than [`Directional`] adds.
-    #[inline(never)]
-    fn other_sighting(self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
+impl Marker for MarkerKind {
+    fn name(&self) -> &'static str {
+        self.texts().0
+    }
+
+    fn about(&self) -> &'static str {
+        self.texts().1
+    }
+
+    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
         let is_here = |dart| graph.vertex(dart) == graph.vertex(pose);
         match self {
             Undirected if is_here(facing) => Sighting::Lying(1),
+            Directional => DirectionalMarker.sighting(graph, facing, pose),
             UndirectedEdge if ends(graph, facing).contains(&pose) => Sighting::Passed,
             DirectedEdge if pose == facing => Sighting::PassedAgainst,
             DirectedEdge if pose == graph.opposite(facing) => Sighting::PassedAlong,
@@ -167,29 +176,6 @@ impl MarkerKind {
             },
             _ => Sighting::Nothing,
         }
-    }
-}
-
-impl Marker for MarkerKind {
-    fn name(&self) -> &'static str {
-        self.texts().0
-    }
-
-    fn about(&self) -> &'static str {
-        self.texts().1
-    }
-
-    #[inline]
-    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
-        // A check makes billions of moves with this marker. Only this part is inlined.
-        if *self != Directional {
-            return self.other_sighting(graph, facing, pose);
-        }
-        if graph.vertex(facing) != graph.vertex(pose) {
-            return Sighting::Nothing;
-        }
-        let (from, to) = (graph.index(pose), graph.index(facing));
-        Sighting::Pointing(Door::between(from, to, graph.degree_around(pose)))
     }
 
     fn first_alike(&self, graph: &EmbeddedGraph, facing: Dart) -> Dart {
@@ -241,6 +227,46 @@ impl Marker for MarkerKind {
 
     fn is_local(&self) -> bool {
         matches!(self, NoMarker | Undirected | Directional)
+    }
+}
+
+/// [`Directional`] as a type of its own, so that a check does not look up the kind of the marker in each of billions of
+/// moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DirectionalMarker;
+
+impl Marker for DirectionalMarker {
+    fn name(&self) -> &'static str {
+        Directional.name()
+    }
+
+    fn about(&self) -> &'static str {
+        Directional.about()
+    }
+
+    #[inline]
+    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
+        if graph.vertex(facing) != graph.vertex(pose) {
+            return Sighting::Nothing;
+        }
+        let (from, to) = (graph.index(pose), graph.index(facing));
+        Sighting::Pointing(Door::between(from, to, graph.degree_around(pose)))
+    }
+
+    fn first_alike(&self, graph: &EmbeddedGraph, facing: Dart) -> Dart {
+        Directional.first_alike(graph, facing)
+    }
+
+    fn starts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart> {
+        Directional.starts(graph, facing)
+    }
+
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
+        Directional.parts(graph, facing)
+    }
+
+    fn is_local(&self) -> bool {
+        Directional.is_local()
     }
 }
 

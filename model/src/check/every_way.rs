@@ -299,7 +299,7 @@ mod tests {
         check::smallest_failure::delegate_to_run,
         enumerate::Class,
         mapping::{Algorithm1Run, InvalidStep, Mapped, MappingChoice, MappingError, ObservedWorld},
-        marker::MarkerKind,
+        marker::DirectionalMarker,
     };
 
     #[test]
@@ -321,7 +321,7 @@ mod tests {
     }
 
     impl Explorer for Altered {
-        delegate_to_run!(MarkerKind, MappingChoice);
+        delegate_to_run!(DirectionalMarker, MappingChoice);
 
         fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
             let choices = self.run.choices()?.into_iter().map(|choice| match choice {

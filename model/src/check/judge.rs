@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::{
+    aid::Aid,
     counts::counted,
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
@@ -21,7 +22,7 @@ use crate::{
 pub fn judge<'c, E: Explorer>(
     explorer: &E,
     facing: Dart,
-    world: &GraphWorld<E::Aid>,
+    world: &GraphWorld<impl Aid>,
     candidate: &'c mut Candidate,
 ) -> Result<&'c Bijection, Flaw> {
     let (graph, moves) = (world.graph(), world.moves());

@@ -8,14 +8,14 @@ use std::{cmp::Reverse, mem};
 use super::{
     Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, Mapped,
     MappingError, MappingEvent, ObservedWorld, PartialMap, StateKey, StepPurpose,
-    map_walk::{NO_PERCEPT, has_walk},
+    map_walk::has_walk,
     partial_map::START,
     tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
     embedded_graph::Dart,
-    marker::{Directional, MarkerKind},
+    marker::DirectionalMarker,
     percept::{Door, Percept, Sighting, retrace},
 };
 
@@ -35,8 +35,8 @@ pub struct Algorithm1Run {
     current: CurrentVertex,
     /// H, from the farthest to the nearest.
     hypotheses: Vec<Dart>,
-    /// Within a step: the percept at each vertex since the path began, and the door taken there.
-    trail: Vec<(Percept, Door)>,
+    /// Within a step: the degree of each vertex since the path began, and the door taken there.
+    trail: Vec<(u32, Door)>,
     /// The tree of the map from the marker; none after a change of the map that it does not survive.
     to_marker: BreadthFirstTree,
 }
@@ -47,8 +47,7 @@ has_walk!(Algorithm1Run);
 
 #[derive(Clone, Copy, Debug)]
 struct CurrentVertex {
-    /// Its percept, with doors counted from its reference dart.
-    percept: Percept,
+    degree: u32,
     /// The door, counted from the reference dart, by which it really came in. It differs from
     /// [`Door::BACK`] after a rejected hypothesis.
     entry: Door,
@@ -56,14 +55,14 @@ struct CurrentVertex {
 
 impl Default for CurrentVertex {
     fn default() -> Self {
-        Self { percept: NO_PERCEPT, entry: Door::BACK }
+        Self { degree: 0, entry: Door::BACK }
     }
 }
 
 /// Algorithm 1. The default choices are the nearest edge and the nearest hypothesis.
 // paper: alg1.return, alg1.terminates, alg1.every-world
 impl Explorer for Algorithm1Run {
-    type Aid = MarkerKind;
+    type Aid = DirectionalMarker;
     type Choice = MappingChoice;
 
     fn info(&self) -> ExplorerInfo {
@@ -75,8 +74,8 @@ impl Explorer for Algorithm1Run {
         }
     }
 
-    fn aid(&self) -> MarkerKind {
-        Directional
+    fn aid(&self) -> DirectionalMarker {
+        DirectionalMarker
     }
 
     fn limit_darts(&mut self, max_darts: usize) {
@@ -96,7 +95,7 @@ impl Explorer for Algorithm1Run {
             return Err(Contradiction::Start { perceived: percept }.into());
         }
         let start = self.walk.begin(percept, world)?;
-        self.set_percept(percept);
+        self.enter(percept.degree);
         self.to_marker.grow_from(self.walk.map(), start);
         Ok(())
     }
@@ -263,7 +262,7 @@ impl Algorithm1Run {
         self.trail.clear();
         self.walk.explore(edge, PartialMap::expected, world)?;
         let percept = self.walk.arrival;
-        self.set_percept(percept);
+        self.enter(percept.degree);
         self.list_hypotheses(edge)?;
         let hypotheses = self.hypotheses.len();
         let contradicted = self.map().unexplored_count() as usize - 1 - hypotheses;
@@ -306,11 +305,10 @@ impl Algorithm1Run {
 
     #[inline]
     fn go_through<W: ObservedWorld>(&mut self, door: Door, world: &mut W) -> Mapped<W, Percept> {
-        let CurrentVertex { percept, entry } = self.current;
-        self.trail.push((percept, door));
-        let door = door.seen_from(entry, percept.degree);
-        let perceived = self.walk.go(door, world)?;
-        self.set_percept(perceived);
+        let CurrentVertex { degree, entry } = self.current;
+        self.trail.push((degree, door));
+        let perceived = self.walk.go(door.seen_from(entry, degree), world)?;
+        self.enter(perceived.degree);
         Ok(perceived)
     }
 
@@ -318,16 +316,17 @@ impl Algorithm1Run {
     // paper: alg1.15
     fn retrace<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         let trail = mem::take(&mut self.trail);
-        let doors = retrace(trail.iter().map(|&(percept, door)| (door, percept.degree)));
-        for (back, &(percept, door)) in doors.zip(trail.iter().rev()) {
+        let doors = retrace(trail.iter().map(|&(degree, door)| (door, degree)));
+        for (back, &(degree, _)) in doors.zip(trail.iter().rev()) {
             let perceived = self.walk.go(back, world)?;
-            let expected = percept.seen_from(door);
+            // The path did not come to the marker.
+            let expected = Percept { degree, sighting: Sighting::Nothing };
             if perceived != expected {
                 return Err(Contradiction::WayBack { expected, perceived }.into());
             }
         }
-        if let Some(&(percept, entry)) = trail.first() {
-            self.current = CurrentVertex { percept, entry };
+        if let Some(&(degree, entry)) = trail.first() {
+            self.current = CurrentVertex { degree, entry };
         }
         self.trail = trail;
         Ok(())
@@ -337,12 +336,12 @@ impl Algorithm1Run {
     /// marker by the dart `pose`.
     fn arrive_at_marker(&mut self, pose: Dart) {
         self.walk.robot = pose;
-        self.set_percept(self.current.percept);
+        self.enter(self.current.degree);
     }
 
     #[inline]
-    fn set_percept(&mut self, percept: Percept) {
-        self.current = CurrentVertex { percept, entry: Door::BACK };
+    fn enter(&mut self, degree: u32) {
+        self.current = CurrentVertex { degree, entry: Door::BACK };
     }
 
     /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis.
@@ -370,7 +369,7 @@ impl Algorithm1Run {
         if self.to_marker.is_grown() {
             self.to_marker.add_leaf(self.walk.map(), vertex);
         }
-        self.set_percept(self.map().expected(self.robot()));
+        self.enter(self.map().degree(vertex));
         self.hypotheses.clear();
         Ok(())
     }

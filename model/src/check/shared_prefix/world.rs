@@ -195,15 +195,19 @@ impl<A: Aid> ObservedWorld for LazyWorld<A> {}
 impl<A: Aid> World for LazyWorld<A> {
     type Error = RefusedAction;
 
-    #[inline]
+    // As in `MapWalk::go`.
+    #[expect(clippy::inline_always, reason = "see above")]
+    #[inline(always)]
     fn percept(&mut self) -> Result<Percept, RefusedAction> {
         let graph = self.graph();
-        let sighting = self.robot.state.as_ref().map(|state| self.aid.sighting(graph, state));
         let degree = graph.degree_around(self.pose());
-        Ok(Percept { degree, sighting: sighting.unwrap_or(Sighting::Nothing) })
+        let sighting = match &self.robot.state {
+            Some(state) => self.aid.sighting(graph, state),
+            None => Sighting::Nothing,
+        };
+        Ok(Percept { degree, sighting })
     }
 
-    // As in `MapWalk::go`.
     #[expect(clippy::inline_always, reason = "see above")]
     #[inline(always)]
     fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {

@@ -87,7 +87,7 @@ impl Flaw {
 }
 
 impl Explorer for Broken {
-    delegate_to_run!(MarkerKind, MappingChoice);
+    delegate_to_run!(DirectionalMarker, MappingChoice);
 
     fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
         self.run.choices()

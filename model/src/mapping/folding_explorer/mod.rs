@@ -32,7 +32,7 @@ use crate::{
     embedded_graph::Dart,
     folding::FoldedTrail,
     injected_flaw::InjectedFlaw,
-    marker::{Directional, MarkerKind},
+    marker::DirectionalMarker,
     percept::{Door, Sighting},
 };
 pub(crate) use recovery::map_with_recovery;
@@ -162,7 +162,7 @@ impl FoldingRun {
 /// The folding explorer. Its default choices break every tie. The map is complete when its trail is
 /// [complete](FoldedTrail::is_complete); the trail has at most [`MAX_DARTS`](crate::folding::MAX_DARTS) darts.
 impl Explorer for FoldingRun {
-    type Aid = MarkerKind;
+    type Aid = DirectionalMarker;
     type Choice = FoldingStep;
 
     fn info(&self) -> ExplorerInfo {
@@ -174,8 +174,8 @@ impl Explorer for FoldingRun {
         }
     }
 
-    fn aid(&self) -> MarkerKind {
-        Directional
+    fn aid(&self) -> DirectionalMarker {
+        DirectionalMarker
     }
 
     fn limit_darts(&mut self, max_darts: usize) {
