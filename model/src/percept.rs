@@ -86,8 +86,16 @@ impl PartialEq for Sighting {
             (Nothing, Nothing) => true,
             (Pointing(one), Pointing(other)) => one == other,
             (Nothing | Pointing(_), _) | (_, Nothing | Pointing(_)) => false,
-            _ => self.cmp(other).is_eq(),
+            _ => self.is_other(other),
         }
+    }
+}
+
+impl Sighting {
+    /// Whether they are equal, by their order.
+    #[cold]
+    fn is_other(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
     }
 }
 

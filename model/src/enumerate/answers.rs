@@ -1,6 +1,6 @@
 //! The answers to the question what is behind a free dart, and their effect on a [`Draft`].
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 
 use super::{Class, Draft, Each, SizeError, check_size, draft::new_vertex};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
@@ -24,8 +24,10 @@ fn degree_bit(degree: usize) -> u64 {
     1 << (u64::BITS as usize - degree)
 }
 
-fn degree_bits(degrees: impl Iterator<Item = usize>) -> u64 {
-    degrees.map(degree_bit).fold(0, |all, bit| all | bit)
+fn degree_bits(degrees: &RangeInclusive<usize>) -> u64 {
+    let (fewest, most) = (*degrees.start(), *degrees.end());
+    let up_to = |degree: usize| !u64::MAX.checked_shr(degree as u32).unwrap_or(0);
+    if fewest > most { 0 } else { up_to(most) & !up_to(fewest - 1) }
 }
 
 impl Answers {
@@ -65,11 +67,11 @@ impl Draft {
     /// decided. In the class `multigraph` each of these leads to a start; in others some may not.
     pub(crate) fn answers(&mut self, dart: Option<Dart>) -> Answers {
         let Some(dart) = dart else {
-            return Answers { free: 0, degrees: degree_bits(self.start_degrees()) };
+            return Answers { free: 0, degrees: degree_bits(&self.start_degrees()) };
         };
         let mut answers = Answers {
             free: if self.can_join() { self.partners(dart) } else { 0 },
-            degrees: degree_bits(self.new_degrees()),
+            degrees: degree_bits(&self.new_degrees()),
         };
         let mut untried = if self.can_get_stuck() { answers } else { Answers::default() };
         while let Some(answer) = untried.take_first() {

@@ -3,7 +3,7 @@
 //! An [`Enumeration`](super::Enumeration) decides in the order of the darts' numbers. A robot decides in the
 //! order in which it takes doors. Both come to each start of a class and a size exactly once.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 
 use super::{Answer, Answers, Class, Each, EnumeratedGraph};
 use crate::embedded_graph::{Dart, EmbeddedGraph, Vertex};
@@ -218,19 +218,18 @@ impl Draft {
         free >= 2 && can_end(free - 2, self.edges_left() - 1)
     }
 
-    /// The degrees, from the highest, that the number of edges allows for a vertex at the end of the next
-    /// edge. There is a free dart.
-    pub(super) fn new_degrees(&self) -> impl Iterator<Item = usize> + use<> {
+    /// The degrees that the number of edges allows for a vertex at the end of the next edge. There is a free dart.
+    pub(super) fn new_degrees(&self) -> RangeInclusive<usize> {
         let free = self.free.count_ones() as usize;
         let left = self.edges_left() - 1;
-        let most = self.highest_degree().min((2 * left + 2).saturating_sub(free));
-        (1..=most).rev().filter(move |degree| can_end(free + degree - 2, left))
+        // A dead end behind the only free dart leaves none, as the last edge does and no other one.
+        let fewest = if free == 1 && left > 0 { 2 } else { 1 };
+        fewest..=self.highest_degree().min((2 * left + 2).saturating_sub(free))
     }
 
-    /// The degrees, from the highest, that the number of edges allows for the start vertex.
-    pub(super) fn start_degrees(&self) -> impl Iterator<Item = usize> + use<> {
-        let target = self.target;
-        (1..=self.highest_degree()).rev().filter(move |&degree| can_end(degree, target))
+    /// The degrees that the number of edges allows for the start vertex.
+    pub(super) fn start_degrees(&self) -> RangeInclusive<usize> {
+        1..=self.highest_degree()
     }
 
     /// The free darts, as bits, to which the class lets a dart be joined.

@@ -10,7 +10,6 @@ use super::{
     MappingError, MappingEvent, ObservedWorld, PartialMap, StateKey, StepPurpose,
     map_walk::has_walk,
     partial_map::START,
-    tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
@@ -37,11 +36,9 @@ pub struct Algorithm1Run {
     hypotheses: Vec<Dart>,
     /// Within a step: the degree of each vertex since the path began, and the door taken there.
     trail: Vec<(u32, Door)>,
-    /// The tree of the map from the marker; none after a change of the map that it does not survive.
-    to_marker: BreadthFirstTree,
 }
 
-clone_in_place!(Algorithm1Run { walk, current, hypotheses, to_marker; scratch trail });
+clone_in_place!(Algorithm1Run { walk, current, hypotheses; scratch trail });
 
 has_walk!(Algorithm1Run);
 
@@ -89,14 +86,12 @@ impl Explorer for Algorithm1Run {
         self.current = CurrentVertex::default();
         self.hypotheses.clear();
         self.trail.clear();
-        self.to_marker.clear();
         let percept = world.percept().map_err(MappingError::World)?;
         if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
             return Err(Contradiction::Start { perceived: percept }.into());
         }
-        let start = self.walk.begin(percept, world)?;
+        self.walk.begin(percept, world)?;
         self.enter(percept.degree);
-        self.to_marker.grow_from(self.walk.map(), start);
         Ok(())
     }
 
@@ -107,10 +102,6 @@ impl Explorer for Algorithm1Run {
         Ok(if self.is_at_line_8() {
             self.hypotheses.len().checked_sub(1).map(MappingChoice::Hypothesis)
         } else {
-            // The tree from the marker is that from a robot at the marker.
-            if self.to_marker.is_grown() && self.map().vertex(self.robot()) == START {
-                self.walk.from_robot.clone_from(&self.to_marker);
-            }
             self.walk.nearest_unexplored().map(MappingChoice::Edge)
         })
     }
@@ -233,7 +224,7 @@ impl Algorithm1Run {
         let mut pose = hypothesis;
         let mut followed = 0;
         // 10: the motions of the path to v0, and the percepts expected along it.
-        while let Some((door, next)) = self.to_marker.toward_root(self.map(), pose) {
+        while let Some((door, next)) = self.walk.from_start.toward_root(self.map(), pose) {
             let expected = self.map().expected(next);
             // 11: try to traverse it.
             let perceived = self.go_through(door, world)?;
@@ -273,7 +264,7 @@ impl Algorithm1Run {
 
     // paper: alg1.hypotheses
     fn list_hypotheses(&mut self, edge: Dart) -> Result<(), Contradiction> {
-        let Self { walk: MapWalk { map, arrival, .. }, hypotheses, .. } = self;
+        let Self { walk: MapWalk { map, arrival, from_start, .. }, hypotheses, .. } = self;
         let marked = arrival.sighting != Sighting::Nothing;
         hypotheses.clear();
         for dart in map.unexplored().rev() {
@@ -293,11 +284,9 @@ impl Algorithm1Run {
                 _ => Err(Contradiction::Marker { vertex, index, perceived }),
             };
         }
-        if !self.to_marker.is_grown() {
-            self.to_marker.grow_from(map, START);
-        }
+        from_start.grow_from_unless_rooted(map, START);
         if hypotheses.len() > 1 {
-            let hops = |dart: Dart| self.to_marker.hops(map.vertex(dart));
+            let hops = |dart: Dart| from_start.hops(map.vertex(dart));
             hypotheses.sort_unstable_by_key(|&dart| Reverse((hops(dart), dart)));
         }
         Ok(())
@@ -351,11 +340,7 @@ impl Algorithm1Run {
         hypothesis: Dart,
         world: &mut impl ObservedWorld,
     ) -> Result<(), InvalidStep> {
-        let edge = self.walk.close_loop(hypothesis, world)?;
-        let is_grown = self.to_marker.is_grown();
-        if is_grown && !self.to_marker.stays_with(self.walk.map(), edge, hypothesis) {
-            self.to_marker.clear();
-        }
+        self.walk.close_loop(hypothesis, world)?;
         self.hypotheses.clear();
         Ok(())
     }
@@ -366,9 +351,6 @@ impl Algorithm1Run {
     fn add_place<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         // The robot may have come back by another dart than it first came in by.
         let vertex = self.walk.add_place(self.current.entry, world)?;
-        if self.to_marker.is_grown() {
-            self.to_marker.add_leaf(self.walk.map(), vertex);
-        }
         self.enter(self.map().degree(vertex));
         self.hypotheses.clear();
         Ok(())

@@ -4,7 +4,7 @@ use std::mem;
 
 use super::{
     Contradiction, FACING, InvalidStep, MapDart, MappingError, MappingEvent, PartialMap, Relocate,
-    StepPurpose, folding_explorer::ArrivalMeasurement, tree::BreadthFirstTree,
+    StepPurpose, folding_explorer::ArrivalMeasurement, partial_map::START, tree::BreadthFirstTree,
 };
 use crate::{
     aid::Aid,
@@ -125,12 +125,24 @@ pub struct MapWalk {
     /// The known end of the edge that is being explored; none between two rounds.
     pub(super) edge: Option<Dart>,
     pub(super) arrival: Percept,
-    /// A tree of the map that is grown again when it does not fit.
+    /// The tree of the map from the start vertex; none after a change of the map that it does not survive.
+    pub(super) from_start: BreadthFirstTree,
+    /// Scratch: the tree of the map from another vertex.
     pub(super) from_robot: BreadthFirstTree,
+    /// Scratch: the darts on the way to somewhere known.
     pub(super) way: Vec<Dart>,
 }
 
-clone_in_place!(MapWalk { bound, moves, map, robot, edge, arrival; scratch from_robot, way });
+clone_in_place!(MapWalk {
+    bound,
+    moves,
+    map,
+    robot,
+    edge,
+    arrival,
+    from_start;
+    scratch from_robot, way
+});
 
 pub(super) const NO_PERCEPT: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
 
@@ -149,6 +161,7 @@ impl MapWalk {
             robot: FACING,
             edge: None,
             arrival: NO_PERCEPT,
+            from_start: BreadthFirstTree::default(),
             from_robot: BreadthFirstTree::default(),
             way: Vec::new(),
         }
@@ -188,6 +201,7 @@ impl MapWalk {
         self.map.clear();
         self.robot = FACING;
         self.edge = None;
+        self.from_start.clear();
         self.from_robot.clear();
     }
 
@@ -226,8 +240,16 @@ impl MapWalk {
         if let Some(dart) = self.map.unexplored().filter(is_here).find(|dart| is_open(*dart)) {
             return Some(dart);
         }
-        self.from_robot.grow_from_unless_rooted(&self.map, here);
-        self.from_robot.nearest_unexplored(&self.map, is_open)
+        let (map, tree) = self.tree_from(here);
+        tree.nearest_unexplored(map, is_open)
+    }
+
+    /// The map, and its tree from a vertex.
+    fn tree_from(&mut self, root: Vertex) -> (&PartialMap, &BreadthFirstTree) {
+        let Self { map, from_start, from_robot, .. } = self;
+        let tree = if root == START { from_start } else { from_robot };
+        tree.grow_from_unless_rooted(map, root);
+        (map, tree)
     }
 
     /// Goes through the known map to the known end of an unexplored edge, and follows it to its
@@ -270,6 +292,10 @@ impl MapWalk {
         expected: impl Fn(&PartialMap, Dart) -> Percept,
         world: &mut W,
     ) -> Mapped<W> {
+        // Often the robot is there.
+        if self.map.vertex(self.robot) == target {
+            return Ok(());
+        }
         let way = self.way_to(target);
         for &dart in &way {
             let Some((next, perceived)) = self.leave_by(dart, world)? else { break };
@@ -309,8 +335,8 @@ impl MapWalk {
         way.clear();
         let here = self.map.vertex(pose);
         if here != target {
-            self.from_robot.grow_from_unless_rooted(&self.map, here);
-            self.from_robot.path_from_root(&self.map, target, &mut way);
+            let (map, tree) = self.tree_from(here);
+            tree.path_from_root(map, target, &mut way);
         }
         way
     }
@@ -379,6 +405,9 @@ impl MapWalk {
         self.edge = None;
         self.from_robot.clear();
         self.map.join(edge, other);
+        if self.from_start.is_grown() && !self.from_start.stays_with(&self.map, edge, other) {
+            self.from_start.clear();
+        }
         world.event(self, MappingEvent::LoopClosed { edge, other });
         Ok(edge)
     }
@@ -416,6 +445,9 @@ impl MapWalk {
         self.from_robot.clear();
         let vertex = self.map.add_vertex(degree);
         self.map.join(edge, self.map.first_dart(vertex));
+        if self.from_start.is_grown() {
+            self.from_start.add_leaf(&self.map, vertex);
+        }
         Ok(vertex)
     }
 

@@ -66,7 +66,7 @@ impl Flaw {
             run.arrive_at_marker(pose);
             return Ok(true);
         }
-        while let Some((door, next)) = run.to_marker.toward_root(run.map(), pose) {
+        while let Some((door, next)) = run.walk.from_start.toward_root(run.map(), pose) {
             let expected = run.map().expected(next);
             let perceived = run.go_through(door, world)?;
             if !self.matches(expected, perceived) {
