@@ -31,6 +31,11 @@ fn degree_bits(degrees: &RangeInclusive<usize>) -> u64 {
 }
 
 impl Answers {
+    #[inline]
+    pub(crate) fn is_empty(self) -> bool {
+        self.free | self.degrees == 0
+    }
+
     pub(crate) fn count(self) -> u32 {
         self.free.count_ones() + self.degrees.count_ones()
     }

@@ -212,15 +212,19 @@ impl Draft {
         self.target - self.edges
     }
 
+    fn free_count(&self) -> usize {
+        self.graph.dart_count() - 2 * self.edges
+    }
+
     /// Whether the number of edges lets the next edge join two free darts.
     pub(super) fn can_join(&self) -> bool {
-        let free = self.free.count_ones() as usize;
+        let free = self.free_count();
         free >= 2 && can_end(free - 2, self.edges_left() - 1)
     }
 
     /// The degrees that the number of edges allows for a vertex at the end of the next edge. There is a free dart.
     pub(super) fn new_degrees(&self) -> RangeInclusive<usize> {
-        let free = self.free.count_ones() as usize;
+        let free = self.free_count();
         let left = self.edges_left() - 1;
         // A dead end behind the only free dart leaves none, as the last edge does and no other one.
         let fewest = if free == 1 && left > 0 { 2 } else { 1 };
@@ -309,7 +313,7 @@ impl Draft {
     pub(super) fn can_still_end(&self) -> bool {
         let left = self.edges_left();
         // As many edges as free darts are always enough: a dead end at each.
-        if !self.can_get_stuck() || self.free.count_ones() as usize <= left {
+        if !self.can_get_stuck() || self.free_count() <= left {
             return true;
         }
         if self.class != Class::Planar {

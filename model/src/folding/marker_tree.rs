@@ -46,9 +46,8 @@ impl MarkerTree {
         order.push(root);
         vertices[root.at()].distance = 0;
         let mut next = 0;
-        while order.len() < vertices.len()
-            && let Some(&parent) = order.get(next)
-        {
+        'all_reached: while order.len() < vertices.len() {
+            let parent = order[next];
             next += 1;
             let distance = vertices[parent.at()].distance + 1;
             for dart in graph.darts_of(parent) {
@@ -58,6 +57,9 @@ impl MarkerTree {
                 if place.distance == UNREACHED {
                     *place = TreeVertex { distance, up, parent, ..NOT_REACHED };
                     order.push(vertex);
+                    if order.len() == vertices.len() {
+                        break 'all_reached;
+                    }
                 }
             }
         }

@@ -268,12 +268,12 @@ impl Algorithm1Run {
         let marked = arrival.sighting != Sighting::Nothing;
         hypotheses.clear();
         for dart in map.unexplored().rev() {
-            let vertex = map.vertex(dart);
-            if map.degree(vertex) == arrival.degree && (vertex == START) == marked && dart != edge {
-                // Without a marker, all darts of a vertex look alike.
-                if !marked || map.expected(dart) == *arrival {
-                    hypotheses.push(dart);
-                }
+            let may_be = map.degree_around(dart) == arrival.degree
+                && (map.vertex(dart) == START) == marked
+                && dart != edge;
+            // Without a marker, all darts of a vertex look alike.
+            if may_be && (!marked || map.expected(dart) == *arrival) {
+                hypotheses.push(dart);
             }
         }
         if hypotheses.is_empty() {

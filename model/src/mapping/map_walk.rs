@@ -292,10 +292,19 @@ impl MapWalk {
         expected: impl Fn(&PartialMap, Dart) -> Percept,
         world: &mut W,
     ) -> Mapped<W> {
-        // Often the robot is there.
+        // Often the robot is there. Only this part is inlined.
         if self.map.vertex(self.robot) == target {
             return Ok(());
         }
+        self.travel(target, expected, world)
+    }
+
+    fn travel<W: ObservedWorld>(
+        &mut self,
+        target: Vertex,
+        expected: impl Fn(&PartialMap, Dart) -> Percept,
+        world: &mut W,
+    ) -> Mapped<W> {
         let way = self.way_to(target);
         for &dart in &way {
             let Some((next, perceived)) = self.leave_by(dart, world)? else { break };

@@ -108,6 +108,11 @@ impl PartialMap {
         self.known.degree(vertex)
     }
 
+    #[inline]
+    pub(super) fn degree_around(&self, dart: Dart) -> u32 {
+        self.known.degree_around(dart)
+    }
+
     /// The dart's place clockwise from the one by which its vertex was first entered.
     #[inline]
     pub fn index(&self, dart: Dart) -> u32 {

@@ -38,17 +38,20 @@ impl BreadthFirstTree {
         reached.clear();
         reached.push(root);
         let mut next = 0;
-        while reached.len() < vertices.len()
-            && let Some(&vertex) = reached.get(next)
-        {
+        'all_reached: while reached.len() < vertices.len() {
+            let vertex = reached[next];
             next += 1;
             let hops = vertices[vertex.at()].hops + 1;
-            for far in map.darts_of(vertex).filter_map(|dart| map.opposite(dart)) {
+            for dart in map.darts_of(vertex) {
+                let Some(far) = map.opposite(dart) else { continue };
                 let neighbour = map.vertex(far);
                 let place = &mut vertices[neighbour.at()];
                 if place.hops == UNREACHED {
                     *place = TreeVertex { hops, up: far };
                     reached.push(neighbour);
+                    if reached.len() == vertices.len() {
+                        break 'all_reached;
+                    }
                 }
             }
         }
@@ -85,6 +88,7 @@ impl BreadthFirstTree {
 
     /// Whether a new edge between two of its vertices leaves the whole tree as it is. It does if both
     /// are equally far from the root: then neither is reached through the other.
+    #[inline]
     pub(super) fn stays_with(&self, map: &PartialMap, one: Dart, other: Dart) -> bool {
         self.hops(map.vertex(one)) == self.hops(map.vertex(other))
     }

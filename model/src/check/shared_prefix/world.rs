@@ -107,7 +107,7 @@ impl<A: Aid> LazyWorld<A> {
     /// Whether an answer of this step, which is the latest with a decision, is left, or may be after it is repeated.
     pub(super) fn may_go_back_to(&self, step: usize) -> bool {
         let mut decisions = self.decisions.iter().rev().take_while(|decision| decision.step == step);
-        self.may_branch() || decisions.any(|decision| decision.left.count() > 0)
+        self.may_branch() || decisions.any(|decision| !decision.left.is_empty())
     }
 
     pub(super) fn answers(&self) -> Vec<Answer> {
@@ -134,14 +134,14 @@ impl<A: Aid> LazyWorld<A> {
     #[inline(never)]
     fn decide(&mut self, dart: Option<Dart>) -> Result<(), RefusedAction> {
         let mut left = self.draft.answers(dart);
-        let count = left.count();
         let index = self.decisions.len();
         let answer = match &self.prefix {
             PrefixSource::Given(answers) if index < answers.len() => {
                 left = Answers::default();
                 Some(answers[index])
             }
-            PrefixSource::Drawn(numbers) if index < numbers.len() && count > 0 => {
+            PrefixSource::Drawn(numbers) if index < numbers.len() && !left.is_empty() => {
+                let count = left.count();
                 for _ in 0..numbers[index] % u64::from(count) {
                     left.take_first();
                 }
