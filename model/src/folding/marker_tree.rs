@@ -46,8 +46,7 @@ impl MarkerTree {
         order.push(root);
         vertices[root.at()].distance = 0;
         let mut next = 0;
-        'all_reached: while order.len() < vertices.len() {
-            let parent = order[next];
+        'all_reached: while let Some(&parent) = order.get(next) {
             next += 1;
             let distance = vertices[parent.at()].distance + 1;
             for dart in graph.darts_of(parent) {

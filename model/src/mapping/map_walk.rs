@@ -299,6 +299,7 @@ impl MapWalk {
         self.travel(target, expected, world)
     }
 
+    #[inline(never)]
     fn travel<W: ObservedWorld>(
         &mut self,
         target: Vertex,

@@ -38,8 +38,7 @@ impl BreadthFirstTree {
         reached.clear();
         reached.push(root);
         let mut next = 0;
-        'all_reached: while reached.len() < vertices.len() {
-            let vertex = reached[next];
+        'all_reached: while let Some(&vertex) = reached.get(next) {
             next += 1;
             let hops = vertices[vertex.at()].hops + 1;
             for dart in map.darts_of(vertex) {
