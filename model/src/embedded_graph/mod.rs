@@ -139,6 +139,12 @@ impl EmbeddedGraph {
         numbers
     }
 
+    /// The opposites of the darts of a vertex, in clockwise order.
+    pub(crate) fn opposites_of(&self, vertex: Vertex) -> impl Iterator<Item = Dart> + '_ {
+        let Darts { first, end } = self.darts_of[vertex.at()];
+        self.darts[first as usize..end as usize].iter().map(|place| place.opposite)
+    }
+
     fn opposites(&self) -> impl ExactSizeIterator<Item = Dart> + '_ {
         self.darts.iter().map(|place| place.opposite)
     }

@@ -51,8 +51,9 @@ impl<'g> CertificateWalk<'g> {
             self.take(one);
             let mut at = self.graph.vertex(other);
             while at != self.tree.root() {
-                self.take(self.tree.up(at));
-                at = self.tree.parent(at);
+                let up = self.tree.up(at);
+                self.take(up);
+                at = self.behind(up);
             }
         }
         for dart in last_way {
@@ -67,8 +68,9 @@ impl<'g> CertificateWalk<'g> {
     fn way_from_marker(&self, mut vertex: Vertex) -> Vec<Dart> {
         let mut way = Vec::new();
         while vertex != self.tree.root() {
-            way.push(self.graph.opposite(self.tree.up(vertex)));
-            vertex = self.tree.parent(vertex);
+            let down = self.graph.opposite(self.tree.up(vertex));
+            way.push(down);
+            vertex = self.graph.vertex(down);
         }
         way.reverse();
         way

@@ -21,14 +21,13 @@ struct TreeVertex {
     distance: u32,
     /// Its dart that leads toward the marker; of no use at the marker's vertex.
     up: Dart,
-    parent: Vertex,
     hangs: bool,
     /// The number of hanging edges on its way to the marker.
     hanging: u32,
 }
 
 const NOT_REACHED: TreeVertex =
-    TreeVertex { distance: UNREACHED, up: Dart(0), parent: Vertex(0), hangs: false, hanging: 0 };
+    TreeVertex { distance: UNREACHED, up: Dart(0), hangs: false, hanging: 0 };
 
 impl MarkerTree {
     /// The number of moves of a shortest certificate of a graph with the marker at a vertex.
@@ -49,12 +48,11 @@ impl MarkerTree {
         'all_reached: while let Some(&parent) = order.get(next) {
             next += 1;
             let distance = vertices[parent.at()].distance + 1;
-            for dart in graph.darts_of(parent) {
-                let up = graph.opposite(dart);
+            for up in graph.opposites_of(parent) {
                 let vertex = graph.vertex(up);
                 let place = &mut vertices[vertex.at()];
                 if place.distance == UNREACHED {
-                    *place = TreeVertex { distance, up, parent, ..NOT_REACHED };
+                    *place = TreeVertex { distance, up, ..NOT_REACHED };
                     order.push(vertex);
                     if order.len() == vertices.len() {
                         break 'all_reached;
@@ -74,7 +72,7 @@ impl MarkerTree {
             let place = &mut vertices[vertex.at()];
             if place.hanging + 1 == graph.degree(vertex) {
                 place.hangs = true;
-                let parent = place.parent;
+                let parent = graph.vertex(graph.opposite(place.up));
                 vertices[parent.at()].hanging += 1;
                 *hanging += 1;
             }
@@ -84,7 +82,8 @@ impl MarkerTree {
         }
         vertices[order[0].at()].hanging = 0;
         for &vertex in &order[1..] {
-            let TreeVertex { parent, hangs, .. } = vertices[vertex.at()];
+            let TreeVertex { up, hangs, .. } = vertices[vertex.at()];
+            let parent = graph.vertex(graph.opposite(up));
             vertices[vertex.at()].hanging = vertices[parent.at()].hanging + u32::from(hangs);
         }
     }
@@ -95,10 +94,6 @@ impl MarkerTree {
 
     pub(crate) fn up(&self, vertex: Vertex) -> Dart {
         self.vertices[vertex.at()].up
-    }
-
-    pub(super) fn parent(&self, vertex: Vertex) -> Vertex {
-        self.vertices[vertex.at()].parent
     }
 
     pub(super) fn hangs(&self, vertex: Vertex) -> bool {

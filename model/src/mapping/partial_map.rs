@@ -2,7 +2,7 @@
 
 use crate::{
     clone_in_place::clone_in_place,
-    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    embedded_graph::{Dart, EmbeddedGraph, NO_DART, Vertex},
     percept::{Door, Percept, Sighting},
 };
 
@@ -43,6 +43,7 @@ impl PartialMap {
     }
 
     pub(super) fn join(&mut self, one: Dart, other: Dart) {
+        debug_assert!([one, other].into_iter().all(|end| self.is_unexplored(end)));
         self.known.join(one, other);
         self.unexplored.retain(|&dart| dart != one && dart != other);
     }
@@ -96,6 +97,12 @@ impl PartialMap {
     #[inline]
     pub fn opposite(&self, dart: Dart) -> Option<Dart> {
         self.known.joined(dart)
+    }
+
+    /// The opposites of the explored darts of a vertex, in the order of these.
+    #[inline]
+    pub(super) fn known_opposites(&self, vertex: Vertex) -> impl Iterator<Item = Dart> + '_ {
+        self.known.opposites_of(vertex).filter(|&far| far != NO_DART)
     }
 
     #[inline]

@@ -41,8 +41,7 @@ impl BreadthFirstTree {
         'all_reached: while let Some(&vertex) = reached.get(next) {
             next += 1;
             let hops = vertices[vertex.at()].hops + 1;
-            for dart in map.darts_of(vertex) {
-                let Some(far) = map.opposite(dart) else { continue };
+            for far in map.known_opposites(vertex) {
                 let neighbour = map.vertex(far);
                 let place = &mut vertices[neighbour.at()];
                 if place.hops == UNREACHED {
