@@ -1,5 +1,7 @@
 //! The runs of a start and their costs.
 
+use smallvec::{SmallVec, smallvec};
+
 /// All runs of Algorithm 1 on one start.
 // paper: cost.shape-6, cost.shape-8
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,11 +41,11 @@ impl ChoicesLimit {
 
 /// A set of small numbers, as bits.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Costs(Vec<u64>);
+pub struct Costs(SmallVec<[u64; 2]>);
 
 impl Costs {
     pub(super) fn nothing() -> Self {
-        Self(vec![1])
+        Self(smallvec![1])
     }
 
     /// Adds each number of another set, increased by `by`.

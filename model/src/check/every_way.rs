@@ -1,7 +1,9 @@
 //! An explorer with all choices. Of Algorithm 1: every order at line 5, and at line 9 among the hypotheses that
 //! the percept on arrival has not already contradicted. Section 2.3.
 
-use std::{collections::HashMap, vec};
+use std::vec;
+
+use hashbrown::HashMap;
 
 use super::{ChoicesLimit, Costs, EveryWay, judge, judge::check_moves};
 use crate::{
@@ -77,6 +79,7 @@ pub fn every_way<E: Explorer>(
         known: HashMap::new(),
         rounds: Vec::new(),
         stack: Vec::new(),
+        spare: Vec::new(),
         candidate: Candidate::default(),
     };
     let is_compared = explorer.state_key().is_some();
@@ -140,6 +143,8 @@ struct Search<'g, 'w, E: Explorer> {
     /// The rounds that have begun: one for each state between two rounds on the stack.
     rounds: Vec<Round>,
     stack: Vec<SearchFrame<'g, E>>,
+    /// Explorers whose memory is used again.
+    spare: Vec<E>,
     candidate: Candidate,
 }
 
@@ -189,29 +194,53 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         mut explorer: E,
     ) -> Result<Option<Futures>, Flaw> {
         let key = explorer.state_key();
-        let (mut level, mut is_new_place) = (0, false);
-        match &key {
-            None => {}
-            Some(StateKey::WithinRound(hypotheses)) => {
-                if let Some(known) = self.in_round(hypotheses) {
-                    return Ok(Some(known));
-                }
-                level = 1;
+        let vertices = known_size(&explorer).0;
+        let is_new_place = matches!(key, Some(StateKey::Round(_)))
+            && self.rounds.last().is_some_and(|last| vertices > last.vertices);
+        if let Some(futures) = self.known(key.as_ref(), is_new_place, &world, &explorer)? {
+            self.spare.push(explorer);
+            return Ok(Some(futures));
+        }
+        let choices = explorer.choices()?;
+        let mut futures = Futures::default();
+        // At the end of a run there is no choice: then the run is judged.
+        if choices.is_empty() {
+            judge(&explorer, self.facing, &world, &mut self.candidate)?;
+            futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
+        }
+        let bytes = 500 + 100 * known_size(&explorer).1 + 20 * choices.len();
+        self.bytes += bytes;
+        let (choices, moves) = (choices.into_iter(), 0);
+        let frame =
+            SearchFrame { key, is_new_place, world, explorer, choices, moves, futures, bytes };
+        self.stack.push(frame);
+        Ok(None)
+    }
+
+    /// What can follow a state, without a search: if it was searched before, or the search has reached its limit.
+    fn known(
+        &mut self,
+        key: Option<&StateKey>,
+        is_new_place: bool,
+        world: &GraphWorld<'g, E::Aid>,
+        explorer: &E,
+    ) -> Result<Option<Futures>, Flaw> {
+        let mut level = 0;
+        if let Some(StateKey::WithinRound(hypotheses)) = key {
+            if let Some(known) = self.in_round(hypotheses) {
+                return Ok(Some(known));
             }
-            Some(StateKey::Round(map, _)) => {
-                is_new_place =
-                    self.rounds.last().is_some_and(|last| map.vertex_count() > last.vertices);
-                if is_new_place {
-                    if let Some(known) = self.in_round(&[]) {
-                        return Ok(Some(known));
-                    }
-                    if !self.begin(1) {
-                        return Ok(Some(Futures::default()));
-                    }
-                }
+            level = 1;
+        }
+        if is_new_place {
+            if let Some(known) = self.in_round(&[]) {
+                return Ok(Some(known));
+            }
+            if !self.begin(1) {
+                return Ok(Some(Futures::default()));
             }
         }
-        if let Some((futures, image)) = key.as_ref().and_then(|key| self.known.get(key)) {
+        if let Some((futures, image)) = key.and_then(|key| self.known.get(key)) {
             // One state, one place in the world; it may have been entered by another dart.
             let (graph, truly, image) = (world.graph(), world.pose(), *image);
             if graph.vertex(image) != graph.vertex(truly) {
@@ -222,34 +251,24 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
             self.keep_new_place(is_new_place, &futures);
             return Ok(Some(futures));
         }
-        if !self.begin(level) {
-            return Ok(Some(Futures::default()));
-        }
-        let choices = explorer.choices()?;
-        let mut futures = Futures::default();
-        // At the end of a run there is no choice: then the run is judged.
-        if choices.is_empty() {
-            judge(&explorer, self.facing, &world, &mut self.candidate)?;
-            futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
-        }
-        let darts = explorer.map_walk().map_or(0, |walk| walk.map().dart_count());
-        let bytes = 500 + 100 * darts + 20 * choices.len();
-        self.bytes += bytes;
-        let (choices, moves) = (choices.into_iter(), 0);
-        let frame =
-            SearchFrame { key, is_new_place, world, explorer, choices, moves, futures, bytes };
-        self.stack.push(frame);
-        Ok(None)
+        Ok((!self.begin(level)).then(Futures::default))
     }
 
     /// What can follow a choice at the state on top of the stack. As [`Self::enter`].
     fn follow(&mut self, choice: E::Choice) -> Result<Option<Futures>, Flaw> {
         let Some(frame) = self.stack.last_mut() else { return Ok(None) };
-        let (mut world, mut next) = (frame.world.clone(), frame.explorer.clone());
+        let mut world = frame.world.clone();
+        let mut next = match self.spare.pop() {
+            Some(mut spare) => {
+                spare.clone_from(&frame.explorer);
+                spare
+            }
+            None => frame.explorer.clone(),
+        };
         next.step(choice, &mut world)?;
         frame.moves = world.moves() - frame.world.moves();
-        if let Some(StateKey::Round(map, _)) = &frame.key {
-            let (vertices, known) = (map.vertex_count(), HashMap::new());
+        if let Some(StateKey::Round(_)) = &frame.key {
+            let (vertices, known) = (known_size(&frame.explorer).0, HashMap::new());
             self.rounds.push(Round { vertices, known, bytes: 0 });
         }
         self.enter(world, next)
@@ -257,18 +276,19 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
 
     /// Removes the state on top of the stack, whose choices were all followed. Returns what can follow it.
     fn leave(&mut self) -> Option<Futures> {
-        let SearchFrame { key, is_new_place, world, futures, bytes, .. } = self.stack.pop()?;
+        let SearchFrame { key, is_new_place, world, explorer, futures, bytes, .. } =
+            self.stack.pop()?;
         self.bytes -= bytes;
         match key {
             None => {}
             Some(StateKey::WithinRound(hypotheses)) => self.keep_in_round(hypotheses, &futures),
-            Some(StateKey::Round(map, vertex)) => {
-                self.bytes += 100 + 20 * map.dart_count() + futures.bytes();
-                let key = StateKey::Round(map, vertex);
+            Some(key) => {
+                self.bytes += 100 + 20 * known_size(&explorer).1 + futures.bytes();
                 self.known.insert(key, (futures.clone(), world.pose()));
                 self.keep_new_place(is_new_place, &futures);
             }
         }
+        self.spare.push(explorer);
         Some(futures)
     }
 
@@ -289,6 +309,12 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         self.bytes += bytes;
         round.known.insert(hypotheses, futures.clone());
     }
+}
+
+/// The vertices and the darts that an explorer knows.
+fn known_size(explorer: &impl Explorer) -> (usize, usize) {
+    let map = explorer.map_walk().map(MapWalk::map);
+    map.map_or((0, 0), |map| (map.vertex_count(), map.dart_count()))
 }
 
 #[cfg(test)]

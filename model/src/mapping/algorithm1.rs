@@ -134,7 +134,7 @@ impl Explorer for Algorithm1Run {
         Some(if self.is_at_line_8() {
             StateKey::WithinRound(self.hypotheses.clone())
         } else {
-            StateKey::Round(self.map().clone(), self.map().vertex(self.robot()))
+            StateKey::round(self.map(), self.map().vertex(self.robot()))
         })
     }
 

@@ -104,10 +104,21 @@ pub trait Explorer: Clone {
 /// What distinguishes a state from others of the same start, so that equal states are followed once.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum StateKey {
-    /// Between two rounds: the map, numbered by discovery, and the robot's vertex in it.
-    Round(PartialMap, Vertex),
+    /// Between two rounds: the map, numbered by discovery, and the robot's vertex in it, as numbers.
+    Round(Box<[u32]>),
     /// Within a round: the hypotheses that are left.
     WithinRound(Vec<Dart>),
+}
+
+impl StateKey {
+    pub(crate) fn round(map: &PartialMap, robot: Vertex) -> Self {
+        let degrees = map.vertices().map(|vertex| map.degree(vertex));
+        let opposites = map.vertices().flat_map(|vertex| map.opposites_of(vertex));
+        let mut numbers = Vec::with_capacity(2 + map.vertex_count() + map.dart_count());
+        numbers.extend([robot.0, map.vertex_count() as u32]);
+        numbers.extend(degrees.chain(opposites.map(|dart| dart.0)));
+        Self::Round(numbers.into_boxed_slice())
+    }
 }
 
 /// The names of an explorer, and the order of its cost.

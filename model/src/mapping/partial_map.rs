@@ -99,10 +99,16 @@ impl PartialMap {
         self.known.joined(dart)
     }
 
+    /// For each dart of a vertex its opposite, or [`NO_DART`].
+    #[inline]
+    pub(super) fn opposites_of(&self, vertex: Vertex) -> impl Iterator<Item = Dart> + '_ {
+        self.known.opposites_of(vertex)
+    }
+
     /// The opposites of the explored darts of a vertex, in the order of these.
     #[inline]
     pub(super) fn known_opposites(&self, vertex: Vertex) -> impl Iterator<Item = Dart> + '_ {
-        self.known.opposites_of(vertex).filter(|&far| far != NO_DART)
+        self.opposites_of(vertex).filter(|&far| far != NO_DART)
     }
 
     #[inline]
