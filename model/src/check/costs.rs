@@ -40,8 +40,16 @@ impl ChoicesLimit {
 }
 
 /// A set of small numbers, as bits.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Debug, Default, PartialEq, Eq)]
 pub struct Costs(SmallVec<[u64; 2]>);
+
+/// A slice is copied at once, where the clone of a `SmallVec` takes its elements one by one.
+impl Clone for Costs {
+    #[inline]
+    fn clone(&self) -> Self {
+        Self(SmallVec::from_slice(&self.0))
+    }
+}
 
 impl Costs {
     pub(super) fn nothing() -> Self {

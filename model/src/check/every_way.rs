@@ -80,10 +80,11 @@ pub fn every_way<E: Explorer>(
         rounds: Vec::new(),
         stack: Vec::new(),
         spare: Vec::new(),
+        spare_rounds: Vec::new(),
         candidate: Candidate::default(),
     };
     let is_compared = explorer.state_key().is_some();
-    let Futures { runs, costs } = search.run(world, explorer)?;
+    let Futures { runs, costs } = search.run(world, Box::new(explorer))?;
     check_moves(costs.max().unwrap_or(0), bound)?;
     let [begun, within_rounds] = search.begun;
     let states = if is_compared { search.known.len() as u64 } else { begun };
@@ -123,7 +124,7 @@ struct SearchFrame<'g, E: Explorer> {
     /// Whether it follows the state within a round in which no hypothesis is left: the place is new.
     is_new_place: bool,
     world: GraphWorld<'g, E::Aid>,
-    explorer: E,
+    explorer: Box<E>,
     choices: vec::IntoIter<E::Choice>,
     moves: u64,
     futures: Futures,
@@ -144,20 +145,25 @@ struct Search<'g, 'w, E: Explorer> {
     rounds: Vec<Round>,
     stack: Vec<SearchFrame<'g, E>>,
     /// Explorers whose memory is used again.
-    spare: Vec<E>,
+    spare: Vec<Box<E>>,
+    /// The same of finished rounds.
+    spare_rounds: Vec<HashMap<Vec<Dart>, Futures>>,
     candidate: Candidate,
 }
 
 impl<'g, E: Explorer> Search<'g, '_, E> {
     /// What can follow the first state. The stack is explicit: it is as deep as the run has choices.
-    fn run(&mut self, world: GraphWorld<'g, E::Aid>, explorer: E) -> Result<Futures, Flaw> {
+    fn run(&mut self, world: GraphWorld<'g, E::Aid>, explorer: Box<E>) -> Result<Futures, Flaw> {
         let mut found = self.enter(world, explorer)?;
         while let Some(frame) = self.stack.last_mut() {
             if let Some(futures) = found.take() {
                 frame.futures.include(&futures, frame.moves);
                 if matches!(frame.key, Some(StateKey::Round(..))) {
-                    let round = self.rounds.pop();
-                    self.bytes -= round.map_or(0, |round| round.bytes);
+                    if let Some(Round { mut known, bytes, .. }) = self.rounds.pop() {
+                        self.bytes -= bytes;
+                        known.clear();
+                        self.spare_rounds.push(known);
+                    }
                 }
             }
             let next =
@@ -191,10 +197,10 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
     fn enter(
         &mut self,
         world: GraphWorld<'g, E::Aid>,
-        mut explorer: E,
+        mut explorer: Box<E>,
     ) -> Result<Option<Futures>, Flaw> {
         let key = explorer.state_key();
-        let vertices = known_size(&explorer).0;
+        let vertices = known_size(&*explorer).0;
         let is_new_place = matches!(key, Some(StateKey::Round(_)))
             && self.rounds.last().is_some_and(|last| vertices > last.vertices);
         if let Some(futures) = self.known(key.as_ref(), is_new_place, &world, &explorer)? {
@@ -205,10 +211,10 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         let mut futures = Futures::default();
         // At the end of a run there is no choice: then the run is judged.
         if choices.is_empty() {
-            judge(&explorer, self.facing, &world, &mut self.candidate)?;
+            judge(&*explorer, self.facing, &world, &mut self.candidate)?;
             futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
         }
-        let bytes = 500 + 100 * known_size(&explorer).1 + 20 * choices.len();
+        let bytes = 500 + 100 * known_size(&*explorer).1 + 20 * choices.len();
         self.bytes += bytes;
         let (choices, moves) = (choices.into_iter(), 0);
         let frame =
@@ -268,7 +274,8 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         next.step(choice, &mut world)?;
         frame.moves = world.moves() - frame.world.moves();
         if let Some(StateKey::Round(_)) = &frame.key {
-            let (vertices, known) = (known_size(&frame.explorer).0, HashMap::new());
+            let vertices = known_size(&*frame.explorer).0;
+            let known = self.spare_rounds.pop().unwrap_or_default();
             self.rounds.push(Round { vertices, known, bytes: 0 });
         }
         self.enter(world, next)
@@ -283,7 +290,7 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
             None => {}
             Some(StateKey::WithinRound(hypotheses)) => self.keep_in_round(hypotheses, &futures),
             Some(key) => {
-                self.bytes += 100 + 20 * known_size(&explorer).1 + futures.bytes();
+                self.bytes += 100 + 20 * known_size(&*explorer).1 + futures.bytes();
                 self.known.insert(key, (futures.clone(), world.pose()));
                 self.keep_new_place(is_new_place, &futures);
             }
