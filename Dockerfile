@@ -5,10 +5,10 @@ FROM rust:1-alpine AS build
 RUN apk add --no-cache musl-dev
 WORKDIR /source
 COPY . .
-RUN cargo build --release --locked
+RUN cargo build --profile dist --locked
 
 FROM scratch
-COPY --from=build /source/target/release/toposlam /toposlam
+COPY --from=build /source/target/dist/toposlam /toposlam
 COPY --from=build /source/worlds /worlds
 COPY --from=build /source/LICENSE-APACHE /source/LICENSE-MIT /
 WORKDIR /work

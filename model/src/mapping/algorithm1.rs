@@ -8,8 +8,7 @@ use std::{cmp::Reverse, mem};
 use super::{
     Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, Mapped,
     MappingError, MappingEvent, ObservedWorld, PartialMap, StateKey, StepPurpose,
-    map_walk::has_walk,
-    partial_map::START,
+    map_walk::has_walk, partial_map::START,
 };
 use crate::{
     clone_in_place::clone_in_place,

@@ -106,7 +106,8 @@ impl<A: Aid> LazyWorld<A> {
 
     /// Whether an answer of this step, which is the latest with a decision, is left, or may be after it is repeated.
     pub(super) fn may_go_back_to(&self, step: usize) -> bool {
-        let mut decisions = self.decisions.iter().rev().take_while(|decision| decision.step == step);
+        let mut decisions =
+            self.decisions.iter().rev().take_while(|decision| decision.step == step);
         self.may_branch() || decisions.any(|decision| !decision.left.is_empty())
     }
 
