@@ -58,16 +58,20 @@ impl Costs {
 
     /// Adds each number of another set, increased by `by`.
     pub(super) fn include(&mut self, other: &Self, by: u64) {
-        let (words, shift) = ((by / 64) as usize, by % 64);
-        self.0.resize(self.0.len().max(other.0.len() + words + 1), 0);
-        for (place, &word) in other.0.iter().enumerate() {
-            self.0[place + words] |= word << shift;
-            if shift > 0 {
-                self.0[place + words + 1] |= word >> (64 - shift);
-            }
+        let (words, shift) = ((by / 64) as usize, (by % 64) as u32);
+        for (place, &word) in (words..).zip(&other.0) {
+            self.set(place, word << shift);
+            self.set(place + 1, word.checked_shr(64 - shift).unwrap_or(0));
         }
-        while self.0.last() == Some(&0) {
-            self.0.pop();
+    }
+
+    /// Sets the bits of a word. The last word is not 0.
+    fn set(&mut self, place: usize, bits: u64) {
+        if bits != 0 {
+            if place >= self.0.len() {
+                self.0.resize(place + 1, 0);
+            }
+            self.0[place] |= bits;
         }
     }
 

@@ -140,7 +140,7 @@ impl EmbeddedGraph {
     }
 
     /// The opposites of the darts of a vertex, in clockwise order.
-    pub(crate) fn opposites_of(&self, vertex: Vertex) -> impl Iterator<Item = Dart> + '_ {
+    pub(crate) fn opposites_of(&self, vertex: Vertex) -> impl ExactSizeIterator<Item = Dart> + '_ {
         let Darts { first, end } = self.darts_of[vertex.at()];
         self.darts[first as usize..end as usize].iter().map(|place| place.opposite)
     }

@@ -112,11 +112,12 @@ pub enum StateKey {
 
 impl StateKey {
     pub(crate) fn round(map: &PartialMap, robot: Vertex) -> Self {
-        let degrees = map.vertices().map(|vertex| map.degree(vertex));
-        let opposites = map.vertices().flat_map(|vertex| map.opposites_of(vertex));
-        let mut numbers = Vec::with_capacity(2 + map.vertex_count() + map.dart_count());
-        numbers.extend([robot.0, map.vertex_count() as u32]);
-        numbers.extend(degrees.chain(opposites.map(|dart| dart.0)));
+        let mut numbers = Vec::with_capacity(1 + map.vertex_count() + map.dart_count());
+        numbers.push(robot.0);
+        for vertex in map.vertices() {
+            numbers.push(map.degree(vertex));
+            numbers.extend(map.opposites_of(vertex).map(|dart| dart.0));
+        }
         Self::Round(numbers.into_boxed_slice())
     }
 }

@@ -101,7 +101,7 @@ impl PartialMap {
 
     /// For each dart of a vertex its opposite, or [`NO_DART`].
     #[inline]
-    pub(super) fn opposites_of(&self, vertex: Vertex) -> impl Iterator<Item = Dart> + '_ {
+    pub(super) fn opposites_of(&self, vertex: Vertex) -> impl ExactSizeIterator<Item = Dart> + '_ {
         self.known.opposites_of(vertex)
     }
 
