@@ -158,12 +158,12 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         while let Some(frame) = self.stack.last_mut() {
             if let Some(futures) = found.take() {
                 frame.futures.include(&futures, frame.moves);
-                if matches!(frame.key, Some(StateKey::Round(..))) {
-                    if let Some(Round { mut known, bytes, .. }) = self.rounds.pop() {
-                        self.bytes -= bytes;
-                        known.clear();
-                        self.spare_rounds.push(known);
-                    }
+                if matches!(frame.key, Some(StateKey::Round(_)))
+                    && let Some(Round { mut known, bytes, .. }) = self.rounds.pop()
+                {
+                    self.bytes -= bytes;
+                    known.clear();
+                    self.spare_rounds.push(known);
                 }
             }
             let next =
