@@ -86,15 +86,15 @@ impl PartialEq for Sighting {
             (Nothing, Nothing) => true,
             (Pointing(one), Pointing(other)) => one == other,
             (Nothing | Pointing(_), _) | (_, Nothing | Pointing(_)) => false,
-            _ => self.is_other(other),
+            _ => self.is_same_rare(other),
         }
     }
 }
 
 impl Sighting {
-    /// Whether they are equal, by their order.
-    #[cold]
-    fn is_other(&self, other: &Self) -> bool {
+    /// Whether two sightings of other kinds are equal.
+    #[inline(never)]
+    fn is_same_rare(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
