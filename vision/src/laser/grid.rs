@@ -229,8 +229,12 @@ pub(super) fn in_order_of(number: impl Fn(usize) -> u32, cells: &[usize]) -> Vec
     let most = cells.iter().map(|&at| number(at)).max().unwrap_or_default() as usize;
     // Where the next cell with each number goes.
     let mut next = vec![0; most + 2];
-    cells.iter().for_each(|&at| next[number(at) as usize + 1] += 1);
-    (1..next.len()).for_each(|at| next[at] += next[at - 1]);
+    for &at in cells {
+        next[number(at) as usize + 1] += 1;
+    }
+    for at in 1..next.len() {
+        next[at] += next[at - 1];
+    }
     let mut ordered = vec![0; cells.len()];
     for &at in cells {
         let to = &mut next[number(at) as usize];

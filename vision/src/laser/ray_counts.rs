@@ -250,7 +250,8 @@ fn for_cells(side: usize, [from, to]: [Place; 2], halved: u32, mut visit: impl F
     let (first, last) = if is_all_on_map { (0, steps) } else { on_map(side, from, step, steps) };
     let [mut x, mut y] = [0, 1].map(|axis| from[axis].saturating_add(first * step[axis]));
     let mut before = usize::MAX;
-    for _ in first..last + 1 {
+    let samples = last + 1 - first;
+    for _ in 0..samples {
         let at = (y >> PART_BITS) as usize * side + (x >> PART_BITS) as usize;
         // The visitor can do without a branch, which would be hard to predict.
         visit(at, at != before);
