@@ -102,6 +102,12 @@ mod tests {
     use super::*;
 
     #[test]
+    fn each_limit_has_its_name() {
+        let limits = [ChoicesLimit::States(5), ChoicesLimit::Memory, ChoicesLimit::Interrupted];
+        assert_eq!(limits.map(ChoicesLimit::name), ["max-states", "memory", "interrupted"]);
+    }
+
+    #[test]
     fn costs_are_shifted_across_words() {
         let mut costs = Costs::default();
         let mut some = Costs::default();

@@ -362,6 +362,60 @@ mod tests {
         MistakeCheck::new(Class::Multigraph, edges, method).unwrap().run(&())
     }
 
+    /// The worlds are an edge between two vertices and a loop. The robot perceives the marked vertex, makes one move, and
+    /// perceives the other vertex, or the marked one again.
+    #[test]
+    fn the_mistakes_that_can_happen_with_one_edge_are_counted_by_hand() {
+        let tally = tally(1, MappingAlgorithm::Algorithm1.into());
+        assert_eq!((tally.starts, tally.moves), (2, 2));
+        let runs = MistakeKind::ALL.into_iter().zip(tally.counts.map(|counts| counts.runs()));
+        let expected = [
+            // Two doors instead of one at both vertices; one instead of two where the marker points along the first.
+            (MistakeKind::Degree, 3),
+            // At the other vertex of the edge, along its only door.
+            (MistakeKind::MarkerInvented, 1),
+            (MistakeKind::MarkerMissed, 3),
+            // On the loop, each time.
+            (MistakeKind::MarkerTurned, 2),
+            // To the other dart, at each of the four places.
+            (MistakeKind::Carried, 4),
+        ];
+        assert_eq!(runs.collect::<Vec<_>>(), expected);
+        assert_eq!(tally.all().runs(), 13);
+    }
+
+    #[test]
+    fn tallies_are_added_number_by_number() {
+        let counts = |from: u64| MistakeCounts {
+            right: from,
+            reported: from + 1,
+            too_large: from + 2,
+            wrong_pose: from + 3,
+            wrong_map: from + 4,
+            extra_moves: -7,
+        };
+        assert_eq!((counts(10).undetected(), counts(10).runs()), (27, 60));
+        let one = MistakeTally {
+            starts: 3,
+            counts: [10, 20, 30, 40, 50].map(counts),
+            moves: 5,
+            ..MistakeTally::default()
+        };
+        let mut sum = one.clone();
+        sum.merge(MistakeTally { interrupted: true, ..one });
+        assert_eq!((sum.starts, sum.moves, sum.interrupted), (6, 10, true));
+        let expected = MistakeCounts {
+            right: 20,
+            reported: 22,
+            too_large: 24,
+            wrong_pose: 26,
+            wrong_map: 28,
+            extra_moves: -14,
+        };
+        assert_eq!(sum.counts[0], expected);
+        assert_eq!(sum.all().runs(), 2 * (5 * 10 + 50 + 100 + 150 + 200 + 250));
+    }
+
     #[test]
     fn with_an_audit_no_mistake_leaves_a_wrong_map() {
         for algorithm in MappingAlgorithm::with_fixed_marker() {

@@ -7,7 +7,7 @@ use crate::{
     folding::FoldedTrail,
     mapping::{MappingEvent, MappingMethod, MovableEvent, SafeguardEvent},
     marker::{MARKERS, NoMarker, Undirected},
-    percept::{Door, Percept, Sighting},
+    percept::{Door, MarkerSet, Percept, Sighting},
     world::GraphWorld,
 };
 
@@ -53,6 +53,57 @@ fn a_walk_along_too_many_doors_has_no_proof() {
     let seen = |degree| [Percept { degree, sighting: Sighting::Nothing }; 2];
     assert_eq!(PerceivedWalk::new(&seen(u32::MAX), &[Door(0)]), Err(NotProved::TooManyDarts));
     assert!(PerceivedWalk::new(&seen(1000), &[Door(0)]).is_ok());
+}
+
+/// A robot leaves the marked vertex by its door 1, and comes back to it by the same dart: that edge has one end.
+#[test]
+fn no_edge_has_one_end_only() {
+    let seen = |door| Percept { degree: 2, sighting: Sighting::Pointing(Door(door)) };
+    let walk = PerceivedWalk::new(&[seen(0), seen(1)], &[Door(1)]).unwrap();
+    let contradiction = WalkContradiction::Edge(0);
+    assert_eq!(
+        fold_walk(&walk, Directional).end,
+        WalkEnd::Contradiction { visit: 1, contradiction }
+    );
+    // By the other dart it is a loop.
+    let walk = PerceivedWalk::new(&[seen(0), seen(0)], &[Door(1)]).unwrap();
+    assert_eq!(fold_walk(&walk, Directional).end, WalkEnd::Complete);
+}
+
+#[test]
+fn each_sighting_of_a_fixed_marker_has_a_word_and_is_seen_with_its_markers_only() {
+    use MarkerKind::{TwoDistinct, TwoIdentical, UndirectedEdge};
+    let these = |numbers: &[usize]| {
+        Sighting::These(MarkerSet::from_numbers(numbers.iter().copied()).unwrap())
+    };
+    for (sighting, word, markers) in [
+        (Sighting::Pointing(Door(1)), Some("pointing 1"), &[Directional][..]),
+        (Sighting::Pointing(Door(2)), Some("pointing 2"), &[]),
+        (Sighting::Nothing, Some("nothing"), &MARKERS),
+        (Sighting::Lying(1), Some("lying"), &[Undirected, TwoIdentical]),
+        (Sighting::Lying(2), Some("two"), &[TwoIdentical]),
+        (Sighting::Lying(3), None, &[]),
+        (these(&[0]), Some("first"), &[TwoDistinct]),
+        (these(&[1]), Some("second"), &[TwoDistinct]),
+        (these(&[0, 1]), Some("both"), &[TwoDistinct]),
+        (these(&[2]), None, &[]),
+        (Sighting::Passed, Some("passed"), &[UndirectedEdge]),
+        (Sighting::PassedAlong, Some("along"), &[MarkerKind::DirectedEdge]),
+        (Sighting::PassedAgainst, Some("against"), &[MarkerKind::DirectedEdge]),
+    ] {
+        assert_eq!(text::word(sighting).as_deref(), word, "{sighting:?}");
+        let seen = Percept { degree: 2, sighting };
+        let Ok(walk) = PerceivedWalk::new(&[seen], &[]) else {
+            assert_eq!(word, None, "what has no word is part of no walk");
+            continue;
+        };
+        for marker in MARKERS {
+            let contradiction = WalkContradiction::Percept(0);
+            let is_impossible =
+                fold_walk(&walk, marker).end == WalkEnd::Contradiction { visit: 0, contradiction };
+            assert_eq!(is_impossible, !markers.contains(&marker), "{sighting:?}, {marker:?}");
+        }
+    }
 }
 
 #[test]

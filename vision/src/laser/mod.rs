@@ -41,5 +41,7 @@ pub mod scan_motion;
 pub mod scene;
 pub mod sensor;
 mod skeleton;
+#[cfg(test)]
+mod tests;
 mod viewpoint;
 pub mod way_graph;
