@@ -123,21 +123,26 @@ pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
         let is_near = at == index + 1 || (0.0..=params.max_silence).contains(&step);
         is_near.then_some((at, step, range))
     };
+    let mut weights = vec![1; readings.len()];
     for (index, &(bearing, range)) in readings.iter().enumerate() {
         let Some(range) = range else { continue };
         if range > farthest {
-            rays.between.push(point(bearing, farthest));
+            rays.between.push((point(bearing, farthest), 1));
             continue;
         }
         rays.hits.push(point(bearing, range));
         let Some((at, step, other)) = next(index) else { continue };
-        // Rays closer than cells, up to where they end or the map does.
+        // Rays half a cell apart where they end. They count as much as those that are a cell apart where the map ends.
         let nearest = range.min(other).min(farthest);
-        let parts = (step.abs() * nearest.min(params.reach) / params.cell).ceil() as u32;
-        for part in 1..parts {
-            let bearing = bearing + step * f64::from(part) / f64::from(parts);
-            rays.between.push(point(bearing, nearest));
+        let parts = |range: f64| (step.abs() * range / params.cell).ceil().max(1.0) as i32;
+        let (few, all) = (parts(params.reach.min(2.0 * nearest)), parts(params.reach));
+        for part in 1..few {
+            let bearing = bearing + step * f64::from(part) / f64::from(few);
+            let weight = all * part / few - all * (part - 1) / few;
+            rays.between.push((point(bearing, nearest), weight));
         }
+        let left = all - all * (few - 1) / few;
+        weights[if range <= other { index } else { at }] += left - 1;
         if at != index + 1 {
             continue;
         }
@@ -153,6 +158,9 @@ pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
             rays.walls.push([one, two]);
         }
     }
+    let is_hit = |range: Option<f64>| range.is_some_and(|range| range <= farthest);
+    let weighed = readings.iter().zip(weights).filter(|((_, range), _)| is_hit(*range));
+    rays.hit_weights = weighed.map(|(_, weight)| weight).collect();
     rays
 }
 

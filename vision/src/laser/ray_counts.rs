@@ -13,8 +13,10 @@ pub(super) struct Rays {
     pub from: Point2<f64>,
     /// Where rays ended at an obstacle.
     pub hits: Vec<Point2<f64>>,
-    /// Where rays between two neighbours would have ended at the latest.
-    pub between: Vec<Point2<f64>>,
+    /// How many rays each of these stands for.
+    pub hit_weights: Vec<i32>,
+    /// Where rays between two neighbours would have ended at the latest, and how many each stands for.
+    pub between: Vec<(Point2<f64>, i32)>,
     /// Straight pieces of wall between the ends of neighbouring rays.
     pub walls: Vec<[Point2<f64>; 2]>,
 }
@@ -73,19 +75,22 @@ impl RayCounts {
         let side = self.side;
         let place = self.place_from(map_from_robot);
         let from = place(rays.from);
-        for (ends, is_hit) in [(&rays.hits, true), (&rays.between, false)] {
-            for &end in ends {
-                let end = place(end);
-                let last = index_of(side, cell_at(end));
-                let before = last.map(|last| self.passes[last]);
-                for_cells(side, [from, end], 0, |at, _| self.passes[at] += more);
-                // A ray does not pass the cell in which it ends.
-                if let Some((last, before)) = last.zip(before) {
-                    self.passes[last] = before;
-                    self.hits[last] += if is_hit { more } else { 0 };
-                }
+        let mut pass = |end: Point2<f64>, weight: i32, hits: i32| {
+            let end = place(end);
+            let last = index_of(side, cell_at(end));
+            let before = last.map(|last| self.passes[last]);
+            for_cells(side, [from, end], 0, |at, _| self.passes[at] += weight);
+            // A ray does not pass the cell in which it ends.
+            if let Some((last, before)) = last.zip(before) {
+                self.passes[last] = before;
+                self.hits[last] += hits;
             }
-        }
+        };
+        rays.hits
+            .iter()
+            .zip(&rays.hit_weights)
+            .for_each(|(&end, weight)| pass(end, weight * more, more));
+        rays.between.iter().for_each(|&(end, weight)| pass(end, weight * more, 0));
         for ends in &rays.walls {
             let ends = ends.map(&place);
             let known = ends.map(|end| index_of(side, cell_at(end)));
