@@ -287,7 +287,7 @@ fn verdicts_about_logs_are_proved() {
     readers.prove(&folder, &files);
     let claims: String =
         files.iter().map(|file| fs::read_to_string(folder.join(file)).unwrap()).collect();
-    for claim in ["determined", "unexplained", "conforms", "diverges", "misfits"] {
+    for claim in ["determined", "unexplained", "conforms", "diverges", "fits", "misfits"] {
         assert!(claims.contains(&format!("claim {claim}\n")), "{claim}");
     }
 }

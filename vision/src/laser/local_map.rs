@@ -104,14 +104,14 @@ impl<'a> LocalWays<'a> {
     }
 }
 
+/// The rays of a scan.
 pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
     let mut rays = Rays { from: scan.scanner(), ..Rays::default() };
     let readings: Vec<(f64, Option<f64>)> = scan.ranges_hit().collect();
     // Nothing beyond is on the map while the scan is remembered.
     let farthest = 2.0 * params.reach + params.memory;
-    let point = |bearing: f64, range: f64| scan.point(bearing, range);
     let ends: Vec<Option<Point2<f64>>> =
-        readings.iter().map(|&(bearing, range)| Some(point(bearing, range?))).collect();
+        readings.iter().map(|&(bearing, range)| Some(scan.point(bearing, range?))).collect();
     let end = |index: usize| *ends.get(index)?;
     // The next reading with a return, if those without one in between cover a small angle only.
     let next = |index: usize| {
@@ -123,26 +123,20 @@ pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
         let is_near = at == index + 1 || (0.0..=params.max_silence).contains(&step);
         is_near.then_some((at, step, range))
     };
-    let mut weights = vec![1; readings.len()];
     for (index, &(bearing, range)) in readings.iter().enumerate() {
         let Some(range) = range else { continue };
         if range > farthest {
-            rays.between.push((point(bearing, farthest), 1));
+            rays.between.push(scan.point(bearing, farthest));
             continue;
         }
-        rays.hits.push(point(bearing, range));
+        rays.hits.push(scan.point(bearing, range));
         let Some((at, step, other)) = next(index) else { continue };
-        // Rays half a cell apart where they end. They count as much as those that are a cell apart where the map ends.
-        let nearest = range.min(other).min(farthest);
-        let parts = |range: f64| (step.abs() * range / params.cell).ceil().max(1.0) as i32;
-        let (few, all) = (parts(params.reach.min(2.0 * nearest)), parts(params.reach));
-        for part in 1..few {
-            let bearing = bearing + step * f64::from(part) / f64::from(few);
-            let weight = all * part / few - all * (part - 1) / few;
-            rays.between.push((point(bearing, nearest), weight));
+        // Rays closer than cells, up to where the map ends.
+        let parts = (step.abs() * params.reach / params.cell).ceil() as u32;
+        for part in 1..parts {
+            let bearing = bearing + step * f64::from(part) / f64::from(parts);
+            rays.between.push(scan.point(bearing, range.min(other).min(farthest)));
         }
-        let left = all - all * (few - 1) / few;
-        weights[if range <= other { index } else { at }] += left - 1;
         if at != index + 1 {
             continue;
         }
@@ -158,9 +152,6 @@ pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
             rays.walls.push([one, two]);
         }
     }
-    let is_hit = |range: Option<f64>| range.is_some_and(|range| range <= farthest);
-    let weighed = readings.iter().zip(weights).filter(|((_, range), _)| is_hit(*range));
-    rays.hit_weights = weighed.map(|(_, weight)| weight).collect();
     rays
 }
 

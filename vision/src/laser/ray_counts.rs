@@ -13,10 +13,8 @@ pub(super) struct Rays {
     pub from: Point2<f64>,
     /// Where rays ended at an obstacle.
     pub hits: Vec<Point2<f64>>,
-    /// How many rays each of these stands for.
-    pub hit_weights: Vec<i32>,
-    /// Where rays between two neighbours would have ended at the latest, and how many each stands for.
-    pub between: Vec<(Point2<f64>, i32)>,
+    /// Where rays between two neighbours would have ended at the latest.
+    pub between: Vec<Point2<f64>>,
     /// Straight pieces of wall between the ends of neighbouring rays.
     pub walls: Vec<[Point2<f64>; 2]>,
 }
@@ -75,22 +73,21 @@ impl RayCounts {
         let side = self.side;
         let place = self.place_from(map_from_robot);
         let from = place(rays.from);
-        let mut pass = |end: Point2<f64>, weight: i32, hits: i32| {
-            let end = place(end);
-            let last = index_of(side, cell_at(end));
-            let before = last.map(|last| self.passes[last]);
-            for_cells(side, [from, end], 0, |at, _| self.passes[at] += weight);
-            // A ray does not pass the cell in which it ends.
-            if let Some((last, before)) = last.zip(before) {
-                self.passes[last] = before;
-                self.hits[last] += hits;
+        for (ends, is_hit) in [(&rays.hits, true), (&rays.between, false)] {
+            for &end in ends {
+                let end = place(end);
+                let last = index_of(side, cell_at(end));
+                let before = last.map(|last| self.passes[last]);
+                for_cells(side, [from, end], 0, |at, is_new| {
+                    self.passes[at] += if is_new { more } else { 0 };
+                });
+                // A ray does not pass the cell in which it ends.
+                if let Some((last, before)) = last.zip(before) {
+                    self.passes[last] = before;
+                    self.hits[last] += if is_hit { more } else { 0 };
+                }
             }
-        };
-        rays.hits
-            .iter()
-            .zip(&rays.hit_weights)
-            .for_each(|(&end, weight)| pass(end, weight * more, more));
-        rays.between.iter().for_each(|&(end, weight)| pass(end, weight * more, 0));
+        }
         for ends in &rays.walls {
             let ends = ends.map(&place);
             let known = ends.map(|end| index_of(side, cell_at(end)));
@@ -242,15 +239,15 @@ fn cell_at(place: Place) -> [i64; 2] {
     place.map(|at| at >> PART_BITS)
 }
 
-/// Visits the cells of a square map on a line between two places, sampled on each cell that it crosses along its main axis, or
-/// twice or four times as often if it is halved once or twice; up to the last sample before its end. The visitor gets the cell
-/// of each sample, and whether it is another one than that of the sample before.
+/// Visits the cells of a square map on a line between two places. It is sampled from its begin to its end: successive samples
+/// are at most a cell apart along its main axis, or a half or a quarter of one if that is halved once or twice. The visitor
+/// gets the cell of each sample, and whether it is another one than that of the sample before.
 fn for_cells(side: usize, [from, to]: [Place; 2], halved: u32, mut visit: impl FnMut(usize, bool)) {
     let off = [0, 1].map(|axis| to[axis].saturating_sub(from[axis]));
     let main = off[0].saturating_abs().max(off[1].saturating_abs());
-    let steps = main >> (PART_BITS - halved);
-    let part = PARTS / f64::from(1 << halved) / main.max(1) as f64;
-    let step = off.map(|off| (off as f64 * part) as i64);
+    let sample = 1 << (PART_BITS - halved);
+    let steps = (main.saturating_add(sample - 1) >> (PART_BITS - halved)).max(1);
+    let step = off.map(|off| off / steps);
     let is_all_on_map = [from, to].iter().all(|place| index_of(side, cell_at(*place)).is_some());
     let (first, last) = if is_all_on_map { (0, steps) } else { on_map(side, from, step, steps) };
     let [mut x, mut y] = [0, 1].map(|axis| from[axis].saturating_add(first * step[axis]));
@@ -323,7 +320,7 @@ mod tests {
             let places = ends.map(|end| [end.x, end.y].map(|at| (at * PARTS) as i64));
             for_cells(SIDE, places, halved, |at, is_new| if is_new { visited.push(at) });
             let off = ends[1] - ends[0];
-            let steps = f64::from(1 << halved) * off.amax();
+            let steps = (f64::from(1 << halved) * off.amax()).ceil().max(1.0);
             let samples = (0..=steps as u32).map(|step| ends[0] + f64::from(step) / steps * off);
             let cells: Vec<Vector2<f64>> = samples.collect();
             // At the border of two cells rounding decides.

@@ -268,11 +268,11 @@ mod tests {
     fn a_robot_that_recovers_ends_right_after_it_passed_a_junction() {
         let scanner = ScannerParams::named("urg-04lx");
         let sampler = WalkSampler { scanner, ..sampler(BuildingKind::Mixed, 5) };
-        let without = sampler.run(16, folding(), &()).unwrap();
+        let without = sampler.run(2, folding(), &()).unwrap();
         let RobotOutcome::GaveUp(why) = &without.outcome else { panic!("{without:?}") };
         assert!(why.contains("contradicts itself") && without.tally.passed > 0, "{without:?}");
         let recovering = MappingMethod::Recovering(RecoveryConfig::default());
-        let with = sampler.run(16, recovering, &()).unwrap();
+        let with = sampler.run(2, recovering, &()).unwrap();
         assert_eq!(with.outcome, RobotOutcome::Right, "{with:?}");
         assert!(with.recoveries > 0, "{with:?}");
     }

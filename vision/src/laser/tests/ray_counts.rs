@@ -16,7 +16,7 @@ fn counts() -> RayCounts {
 
 /// A ray from one point that hits another.
 fn hit(from: [f64; 2], to: [f64; 2]) -> Rays {
-    Rays { from: from.into(), hits: vec![to.into()], hit_weights: vec![1], ..Rays::default() }
+    Rays { from: from.into(), hits: vec![to.into()], ..Rays::default() }
 }
 
 fn add(counts: &mut RayCounts, rays: &Rays) {
@@ -47,7 +47,7 @@ fn cells_up_to_a_hit_are_free_and_the_hit_is_occupied() {
 #[test]
 fn a_ray_that_would_have_ended_at_the_latest_somewhere_hits_nothing() {
     let mut counts = counts();
-    let between = vec![([0.5, -3.5].into(), 1)];
+    let between = vec![[0.5, -3.5].into()];
     add(&mut counts, &Rays { from: [0.5, 0.5].into(), between, ..Rays::default() });
     // The cell of its end is not passed.
     assert_eq!(rows(&seen(&counts)), ["   ", " . ", " . ", " . ", " . ", "   "]);
@@ -135,8 +135,7 @@ fn rays_begin_and_end_where_the_motion_takes_them() {
     let rays = Rays {
         from: [0.5, -0.5].into(),
         hits: vec![[3.5, -0.5].into()],
-        hit_weights: vec![1],
-        between: vec![([0.5, 2.5].into(), 1)],
+        between: vec![[0.5, 2.5].into()],
         walls: vec![[[-4.5, -0.5], [-4.5, 3.5]].map(Point2::from)],
     };
     let mut counts = counts();

@@ -49,13 +49,10 @@ fn the_rays_of_a_scan_end_on_the_walls_of_the_room() {
             [hit.x, 6.0 - hit.x, hit.y, 4.0 - hit.y].into_iter().fold(f64::INFINITY, f64::min);
         assert!(off.abs() < 1e-5, "{hit}");
     }
-    // A degree is 1.9 cells wide where the map ends, 16 m away: each reading stands for two rays there. Only readings farther
-    // than 4.3 m, where a degree is half a cell wide, have one between them.
-    let far = rays.hits.iter().filter(|hit| hit.coords.norm() > 4.29).count();
-    assert!((1..=far).contains(&rays.between.len()), "{} of {far}", rays.between.len());
-    let between = rays.between.iter().map(|(_, weight)| weight);
-    assert_eq!(rays.hit_weights.iter().chain(between).sum::<i32>(), 2 * 360);
-    // Nor are their ends, except on walls that rays meet at a small angle.
+    // A degree is 1.9 cells of 0.15 m wide where the map ends, 16 m away: there is one ray between any two readings.
+    assert_eq!(rays.between.len(), 360);
+    // The far corner is 5 m away, where a degree is 9 cm across. Neighbouring ends are farther apart than a cell only on walls
+    // that rays meet at a small angle.
     assert!(rays.walls.iter().all(|[one, other]| distance(*one, *other) >= 0.15));
 }
 
@@ -96,9 +93,9 @@ fn readings_without_a_return_show_free_space_if_they_are_few() {
     // 0.1 radians are 5.7 degrees: four readings leave a gap of 5 degrees.
     let few = silent(4);
     assert_eq!(few.hits.len(), 6);
-    // At 16 m, where the map ends, a degree is 1.9 cells wide, and 5 degrees 9.3 cells. So they are at 8 m, in half cells.
+    // At 16 m, where the map ends, a degree is 1.9 cells wide, and 5 degrees 9.3 cells.
     assert_eq!(few.between.len(), 4 + 9);
-    let nearest = few.between.iter().filter(|(end, _)| near(end.coords.norm(), 8.0)).count();
+    let nearest = few.between.iter().filter(|end| near(end.coords.norm(), 8.0)).count();
     assert_eq!(nearest, 2 + 9, "up to the nearer one");
     assert_eq!(silent(5).between.len(), 4, "a gap of 6 degrees shows nothing");
 }
@@ -109,7 +106,7 @@ fn what_is_farther_than_a_map_reaches_while_its_scan_is_remembered_is_no_hit() {
     let rays = rays(&readings(&[49.9, 50.1]), &LocalMapParams::default());
     assert_eq!(rays.hits.len(), 1);
     assert!((rays.hits[0].coords.norm() - 49.9).abs() < 1e-5);
-    let far: Vec<f64> = rays.between.iter().map(|(end, _)| end.coords.norm()).collect();
+    let far: Vec<f64> = rays.between.iter().map(|end| end.coords.norm()).collect();
     assert!(far.iter().any(|far| near(*far, 50.0)), "{far:?}");
     assert!(far.iter().all(|far| *far < 50.0 + 1e-9));
 }
