@@ -231,7 +231,7 @@ type Place = [i64; 2];
 const PARTS: f64 = 4_294_967_296.0;
 /// The logarithm of their number.
 const PART_BITS: u32 = 32;
-/// Farther places are nowhere near a map.
+/// A line that begins farther away reaches no map.
 const FARTHEST: i64 = 1 << 61;
 
 /// The cell at a place.
@@ -265,10 +265,13 @@ fn for_cells(side: usize, [from, to]: [Place; 2], halved: u32, mut visit: impl F
 /// The first and the last step of a line that are on a map; the last one is before the first if none is.
 #[cold]
 fn on_map(side: usize, from: Place, step: Place, steps: i64) -> (i64, i64) {
+    if !from.iter().all(|at| (-FARTHEST..=FARTHEST).contains(at)) {
+        return (0, -1);
+    }
     let border = (side as i64) << PART_BITS;
     let (mut first, mut last) = (0, steps);
     for axis in 0..2 {
-        let from = from[axis].clamp(-FARTHEST, FARTHEST);
+        let from = from[axis];
         // How far it is to the first and to the last place on the map, forwards.
         let (near, far) = match step[axis] {
             ..0 => (from + 1 - border, from),

@@ -65,6 +65,22 @@ fn a_ray_leaves_the_map_and_what_is_beyond_it_is_lost() {
 }
 
 #[test]
+fn a_ray_from_or_to_no_place_at_all_changes_nothing_else() {
+    let far = [1e9, 1e12, 1e300, f64::INFINITY, f64::NAN];
+    for far in far.into_iter().flat_map(|far| [far, -far]) {
+        let mut counts = counts();
+        add(&mut counts, &hit([0.5, 0.5], [2.5, 0.5]));
+        for (from, to) in
+            [([far, 0.5], [far, far]), ([far, far], [-far, -far]), ([far, -far], [3.5, 0.5])]
+        {
+            add(&mut counts, &hit(from, to));
+            remove(&mut counts, &hit(from, to));
+        }
+        assert_eq!(rows(&seen(&counts)), ["     ", " ..# ", "     "], "{far}");
+    }
+}
+
+#[test]
 fn a_cell_is_occupied_if_a_fifth_of_the_rays_that_reach_it_end_there() {
     let params = LocalMapParams { occupied: 0.2, ..LocalMapParams::default() };
     for (passes, is_wall) in [(1, true), (4, true), (5, false)] {
