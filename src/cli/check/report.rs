@@ -126,7 +126,8 @@ impl<'o> CheckReport<'o> {
             let heads = cells.iter().map(|(head, width, _)| format!("{head:>width$}"));
             writeln!(self.out, "\n{}", heads.collect::<String>())?;
         }
-        let row = cells.iter().map(|(_, width, cell)| format!("{cell:>width$}"));
+        // The numbers of the largest checks are wider than their columns.
+        let row = cells.iter().map(|(_, width, cell)| format!("  {cell:>width$}", width = width - 2));
         writeln!(self.out, "{}", row.collect::<String>().trim_end())?;
         if let Some(runs) = line.runs {
             let some = runs == u128::MAX || line.gave_up.unwrap_or_default() > 0;
