@@ -72,27 +72,27 @@ pub const REACH: f64 = 2.6;
 /// Steps along a bearing, one pixel of the ground view each.
 const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
 
-/// The pixels of the ground view on each bearing, from the robot outwards.
+/// How a stripe looks on a bearing.
 #[derive(Clone, Debug)]
 pub struct Bearings {
-    /// [`STEPS`] for each bearing.
-    pixels: Vec<u32>,
     /// The width of a stripe that begins at a step and is met at a right angle, in steps.
     width: Vec<f64>,
     pub(crate) stripe: Stripe,
 }
 
+/// The pixels of the ground view on each bearing from the robot outwards, [`STEPS`] for each.
+pub(crate) fn ground_on_bearings() -> impl Iterator<Item = usize> {
+    (0..BEARINGS).flat_map(|bearing| {
+        (0..STEPS).map(move |step| {
+            let point = Point2::from(range(step as f64) * direction(bearing));
+            GroundView::index(point).unwrap_or_default()
+        })
+    })
+}
+
 impl Bearings {
     /// The bearings of a camera at this height above the floor, in metres, for walls with this stripe.
     pub fn new(stripe: Stripe, height: f64) -> Self {
-        let pixels = (0..BEARINGS)
-            .flat_map(|bearing| {
-                (0..STEPS).map(move |step| {
-                    let point = Point2::from(range(step as f64) * direction(bearing));
-                    GroundView::index(point).unwrap_or_default() as u32
-                })
-            })
-            .collect();
         let width = (0..STEPS).map(|step| {
             let width = match stripe.kind {
                 StripeKind::OnFloor => stripe.width,
@@ -103,20 +103,16 @@ impl Bearings {
             };
             width / GroundView::SCALE
         });
-        Self { pixels, width: width.collect(), stripe }
+        Self { width: width.collect(), stripe }
     }
 
     /// What is seen on each bearing of a ground view.
     // paper: sense.boundary, sense.boundary-points
     pub fn look(&self, view: &GroundView) -> Boundary {
-        let sights = self.pixels.chunks_exact(STEPS).map(|pixels| {
-            let mut classes = [PixelClass::Unseen; STEPS];
-            for (class, &pixel) in classes.iter_mut().zip(pixels) {
-                *class = view.classes[pixel as usize];
-            }
-            self.sight(&classes)
-        });
-        Boundary { sights: sights.collect() }
+        let classes: Vec<PixelClass> = view.on_bearings().collect();
+        Boundary {
+            sights: classes.chunks_exact(STEPS).map(|classes| self.sight(classes)).collect(),
+        }
     }
 
     /// What is seen on one bearing, from its classes, from the robot outwards.
