@@ -84,17 +84,22 @@ impl GroundView {
 
     /// The class of a pixel; `None` outside of the view.
     pub fn class(&self, index: usize) -> Option<PixelClass> {
-        self.unwrapping.shown_by.get(index).map(|&number| self.classes[number as usize])
+        self.unwrapping.shown_by.get(index).map(|&number| self.shown(number))
     }
 
     /// The classes of all pixels.
     pub fn classes(&self) -> impl Iterator<Item = PixelClass> + '_ {
-        self.unwrapping.shown_by.iter().map(|&number| self.classes[number as usize])
+        self.unwrapping.shown_by.iter().map(|&number| self.shown(number))
     }
 
-    /// The classes on bearings, as [`ground_on_bearings`] has them.
-    pub(crate) fn on_bearings(&self) -> impl Iterator<Item = PixelClass> + '_ {
-        self.unwrapping.on_bearings.iter().map(|&number| self.classes[number as usize])
+    /// The numbers of the image's pixels on bearings, as [`ground_on_bearings`] has them.
+    pub(crate) fn on_bearings(&self) -> &[u32] {
+        &self.unwrapping.on_bearings
+    }
+
+    /// The class of one of the image's pixels, by its number.
+    pub(crate) fn shown(&self, number: u32) -> PixelClass {
+        self.classes[number as usize]
     }
 
     /// The pixels of a class, ascending.
@@ -179,7 +184,8 @@ mod tests {
             };
             let expected: Vec<_> = (0..GroundView::SIDE * GroundView::SIDE).map(expected).collect();
             assert!(view.classes().eq(expected.iter().copied()));
-            assert!(view.on_bearings().eq(ground_on_bearings().map(|index| expected[index])));
+            let on_bearings = view.on_bearings().iter().map(|&number| view.shown(number));
+            assert!(on_bearings.eq(ground_on_bearings().map(|index| expected[index])));
             for class in PixelClass::ALL {
                 let of_it = expected.iter().enumerate().filter(|(_, at)| **at == class);
                 assert!(view.pixels_of(class).into_iter().eq(of_it.map(|(index, _)| index)));
