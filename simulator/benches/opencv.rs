@@ -4,7 +4,8 @@
 //!
 //! `cargo bench -p toposlam-simulator --bench opencv` needs Python with
 //! `opencv-python-headless`, which `.ci/setup benchmarks` installs for the interpreter
-//! `target/python/bin/python`. `PYTHON` names another one.
+//! `target/opencv/bin/python`. `PYTHON` names another one. `--test` is one
+//! frame.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a benchmark may panic")]
 
@@ -67,7 +68,8 @@ fn main() {
             .map(|time| time.as_secs_f64() * 1e6)
     };
     let mut times = (Vec::new(), Vec::new());
-    for _ in 0..FRAMES {
+    let is_test = std::env::args().any(|word| word == "--test");
+    for _ in 0..if is_test { 1 } else { FRAMES } {
         times.0.push(ours());
         times.1.push(opencv.frame());
     }
@@ -114,7 +116,7 @@ struct OpenCv {
 impl OpenCv {
     /// Panics if the program fails.
     fn start(folder: &Path) -> Self {
-        let setup = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/python/bin/python");
+        let setup = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/opencv/bin/python");
         let python = std::env::var_os("PYTHON").unwrap_or_else(|| setup.into());
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/opencv.py");
         let mut child = Command::new(python)
