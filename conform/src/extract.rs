@@ -247,11 +247,7 @@ pub fn extract(
         last: 0,
         sensors: sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]),
         watch,
-        scans: LoggedScans {
-            sources: Vec::new(),
-            poses: BTreeMap::new(),
-            log: ScanLogBuilder::new(laser),
-        },
+        scans: LoggedScans { sources: Vec::new(), log: ScanLogBuilder::new(laser) },
         placing,
     };
     let mut read = extraction(Placing::Odometry(ScanOdometry::default()));
@@ -290,9 +286,6 @@ pub fn extract(
             infer_events(&run.seen, marked)
         }
         Evidence::Laser => {
-            if run.matched_scans.is_some() {
-                run.poses.clone_from(&scans.poses);
-            }
             let SensedLog { visits, driven, drift, network, wide } = scans.visits(driven, watch);
             run.arms = visits.visits.iter().map(|visit| visit.arms.clone()).collect();
             let (events, junctions) = visit_events(visits);
@@ -321,7 +314,6 @@ struct SensedLog {
 /// The scans of a log, each with its source.
 struct LoggedScans {
     sources: Vec<EventSource>,
-    poses: BTreeMap<EventId, Odometry>,
     log: ScanLogBuilder,
 }
 
@@ -331,7 +323,6 @@ impl LoggedScans {
             // Scans are in the order of their stamps.
             let last = self.sources.last().map_or(0, |last| last.time);
             self.sources.push(EventSource { time: source.time.max(last), ..source });
-            self.poses.insert(source.id, odometry);
             self.log.add(scan, odometry);
         }
     }
@@ -449,6 +440,7 @@ impl<W: Watch> Extraction<'_, W> {
             }
             Placing::Scans(track) => {
                 let (waiting, matched) = track.finish()?;
+                self.run.poses.extend(waiting.iter().map(PlacedScan::pose));
                 self.scans.add(waiting);
                 self.run.matched_scans = Some(matched);
             }
@@ -510,7 +502,11 @@ impl<W: Watch> Extraction<'_, W> {
                 let placed = PlacedScan { source, stamp, scan, odometry };
                 self.scans.add(match &mut self.placing {
                     Placing::Odometry(placing) => placing.scan(placed),
-                    Placing::Scans(track) => track.scan(placed)?,
+                    Placing::Scans(track) => {
+                        let placed = track.scan(placed)?;
+                        self.run.poses.extend(placed.iter().map(PlacedScan::pose));
+                        placed
+                    }
                 });
             }
             EventKind::Frame(frame) => {

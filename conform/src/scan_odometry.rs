@@ -4,6 +4,7 @@
 use std::{collections::VecDeque, sync::Arc};
 
 use serde::Serialize;
+use toposlam_logs::record::EventId;
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use toposlam_vision::laser::scan::Scan;
 
@@ -20,6 +21,13 @@ pub(super) struct PlacedScan {
     pub stamp: u64,
     pub scan: Arc<Scan>,
     pub odometry: Odometry,
+}
+
+impl PlacedScan {
+    /// Its message, and where it was taken.
+    pub(super) fn pose(&self) -> (EventId, Odometry) {
+        (self.source.id, self.odometry)
+    }
 }
 
 /// Readings farther apart than this, in nanoseconds, have a gap in between.

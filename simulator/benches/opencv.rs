@@ -3,8 +3,9 @@
 //! 800.
 //!
 //! `cargo bench -p toposlam-simulator --bench opencv` needs Python with
-//! `opencv-python-headless==4.12.*`. `PYTHON` names the interpreter. Where they are not installed it
-//! prints a message and measures nothing.
+//! `opencv-python-headless`, which `.ci/setup benchmarks` installs for the interpreter
+//! `target/opencv/bin/python`. `PYTHON` names another one. `--test` is one
+//! frame.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a benchmark may panic")]
 
@@ -24,11 +25,8 @@ use toposlam_simulator::{
     view_sampler::ViewSampler,
 };
 use toposlam_vision::{
-    boundary::Bearings,
-    camera::Camera,
-    cluster::clusters,
-    colour::FloorRing,
-    ground_view::{GroundView, Unwrapping},
+    boundary::Bearings, camera::Camera, cluster::clusters, colour::FloorRing,
+    ground_view::GroundView,
 };
 
 /// The number of frames of each.
@@ -53,20 +51,16 @@ fn main() {
     mask.save(folder.join("labels.png")).unwrap();
     write_maps(&camera, &folder);
 
-    let Some(mut opencv) = OpenCv::start(&folder) else {
-        println!("skipped: there is no Python with opencv-python-headless (PYTHON names one)");
-        return;
-    };
+    let mut opencv = OpenCv::start(&folder);
     let (ring, table) = (FloorRing::new(&camera), colours.table());
-    let unwrapping = Unwrapping::new(&camera);
     let bearings = Bearings::new(colours.stripe, camera.eye_height());
-    let mut view = GroundView::unseen();
+    let mut view = GroundView::unseen(&camera);
     let mut ours = || {
         let begun = Instant::now();
         let gain = colours.gain(&ring.colours(&image)).unwrap();
         let lit = table.lit(gain);
         let lighted = Instant::now();
-        unwrapping.view(&image, &lit, &mut view);
+        view.show(&image, &lit);
         let classified = Instant::now();
         black_box(clusters(&bearings.look(&view)));
         let done = Instant::now();
@@ -74,27 +68,28 @@ fn main() {
             .map(|time| time.as_secs_f64() * 1e6)
     };
     let mut times = (Vec::new(), Vec::new());
-    for _ in 0..FRAMES {
+    let is_test = std::env::args().any(|word| word == "--test");
+    for _ in 0..if is_test { 1 } else { FRAMES } {
         times.0.push(ours());
         times.1.push(opencv.frame());
     }
     let whole_ours = print("toposlam", &OURS, &times.0);
     let whole_theirs = print(&opencv.version, &THEIRS, &times.1);
-    println!("OpenCV takes {:.1} times as long, at the median", whole_theirs / whole_ours);
+    println!("OpenCV takes {:.1} times as long", whole_theirs / whole_ours);
 }
 
-/// Prints the median of each stage. Returns the median of their sum, in microseconds.
+/// Prints the median of each stage. Returns their sum, in microseconds.
 fn print<const STAGES: usize>(name: &str, stages: &[&str; STAGES], times: &[[f64; STAGES]]) -> f64 {
-    let median = |time: &dyn Fn(&[f64; STAGES]) -> f64| {
-        let mut times: Vec<f64> = times.iter().map(time).collect();
+    let medians: [f64; STAGES] = std::array::from_fn(|stage| {
+        let mut times: Vec<f64> = times.iter().map(|time| time[stage]).collect();
         times.sort_by(f64::total_cmp);
         times[times.len() / 2]
-    };
-    let whole = median(&|times| times.iter().sum());
+    });
+    let whole = medians.iter().sum();
     let number = |microseconds: f64| grouped(microseconds.round() as u128);
-    println!("{name}: {} us a frame, median of {}", number(whole), times.len());
-    for (at, stage) in stages.iter().enumerate() {
-        println!("  {stage:<22} {:>6} us", number(median(&|times| times[at])));
+    println!("{name}: {} us a frame, medians of {}", number(whole), times.len());
+    for (stage, median) in stages.iter().zip(medians) {
+        println!("  {stage:<22} {:>6} us", number(median));
     }
     whole
 }
@@ -119,24 +114,23 @@ struct OpenCv {
 }
 
 impl OpenCv {
-    /// `None` if there is no such Python or no OpenCV. Panics if the program fails.
-    fn start(folder: &Path) -> Option<Self> {
-        let python = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
-        let imported = Command::new(&python).args(["-c", "import cv2"]).output();
-        imported.ok().filter(|imported| imported.status.success())?;
+    /// Panics if the program fails.
+    fn start(folder: &Path) -> Self {
+        let setup = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/opencv/bin/python");
+        let python = std::env::var_os("PYTHON").unwrap_or_else(|| setup.into());
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/opencv.py");
         let mut child = Command::new(python)
             .args([script.as_path(), folder])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
-            .unwrap();
+            .expect("PYTHON names an interpreter with opencv-python-headless");
         let mut answers = BufReader::new(child.stdout.take().unwrap());
         let mut ready = String::new();
         answers.read_line(&mut ready).unwrap();
         let version = ready.strip_prefix("ready ").expect("the program says that it is ready");
         let version = format!("OpenCV {}", version.trim());
-        Some(Self { child, answers, version })
+        Self { child, answers, version }
     }
 
     /// The microseconds of each stage of a frame.

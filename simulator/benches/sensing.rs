@@ -17,7 +17,7 @@ use toposlam_vision::{
     cluster::clusters,
     colour::{ColourModel, ColourTable, FloorRing, Gain},
     corner::corners,
-    ground_view::{GroundView, Unwrapping},
+    ground_view::GroundView,
     hallway::hallway,
     junction::junction,
     line::lines,
@@ -62,8 +62,8 @@ impl Case {
         let image = render(&rig, &building, POSES[place], &effects, 7);
         let (ring, table) = (FloorRing::new(&camera), colours.table());
         let gain = colours.gain(&ring.colours(&image)).unwrap();
-        let mut view = GroundView::unseen();
-        Unwrapping::new(&camera).view(&image, &table.lit(gain), &mut view);
+        let mut view = GroundView::unseen(&camera);
+        view.show(&image, &table.lit(gain));
         let bearings = Bearings::new(colours.stripe, camera.eye_height());
         let boundary = bearings.look(&view);
         Self { camera, colours, image, ring, table, gain, view, bearings, boundary }
@@ -99,9 +99,9 @@ fn step_1_light(bencher: Bencher, width: u32) {
 #[divan::bench(args = [640, 1280], sample_count = 200, sample_size = 1)]
 fn step_2_ground_view(bencher: Bencher, width: u32) {
     let case = Case::new(width, 0);
-    let (unwrapping, lit) = (Unwrapping::new(&case.camera), case.table.lit(case.gain));
-    let mut view = GroundView::unseen();
-    bencher.bench_local(|| unwrapping.view(&case.image, &lit, &mut view));
+    let lit = case.table.lit(case.gain);
+    let mut view = case.view.clone();
+    bencher.bench_local(|| view.show(&case.image, &lit));
 }
 
 /// The boundary points.

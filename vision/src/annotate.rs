@@ -80,7 +80,7 @@ pub fn shade(class: PixelClass) -> Rgb<u8> {
 
 pub fn classes(view: &GroundView) -> RgbImage {
     let mut canvas = empty();
-    for (pixel, &class) in canvas.picture.pixels_mut().zip(&view.classes) {
+    for (pixel, class) in canvas.picture.pixels_mut().zip(view.classes()) {
         *pixel = shade(class);
     }
     with_body(canvas).picture
@@ -298,7 +298,7 @@ mod tests {
 
     #[test]
     fn every_class_has_its_own_shade() {
-        let mut view = GroundView::unseen();
+        let mut view = GroundView::drawn();
         view.classes[..5].copy_from_slice(&Confusion::GIVEN);
         let picture = classes(&view);
         let shades: HashSet<_> = picture.pixels().take(6).collect();

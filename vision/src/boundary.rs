@@ -3,7 +3,7 @@
 //! Joints between tiles and reflections look like stripes, too, and a wall may have the floor's colour. So a bearing
 //! may have several edges, the last of them sure or not; the neighbouring bearings decide.
 
-use std::{f64::consts::TAU, sync::LazyLock};
+use std::{f64::consts::TAU, ops::Range, sync::LazyLock};
 
 use nalgebra::{Point2, Vector2};
 
@@ -72,27 +72,27 @@ pub const REACH: f64 = 2.6;
 /// Steps along a bearing, one pixel of the ground view each.
 const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
 
-/// The pixels of the ground view on each bearing, from the robot outwards.
+/// How a stripe looks on a bearing.
 #[derive(Clone, Debug)]
 pub struct Bearings {
-    /// [`STEPS`] for each bearing.
-    pixels: Vec<u32>,
     /// The width of a stripe that begins at a step and is met at a right angle, in steps.
     width: Vec<f64>,
     pub(crate) stripe: Stripe,
 }
 
+/// The pixels of the ground view on each bearing from the robot outwards, [`STEPS`] for each.
+pub(crate) fn ground_on_bearings() -> impl Iterator<Item = usize> {
+    (0..BEARINGS).flat_map(|bearing| {
+        (0..STEPS).map(move |step| {
+            let point = Point2::from(range(step as f64) * direction(bearing));
+            GroundView::index(point).unwrap_or_default()
+        })
+    })
+}
+
 impl Bearings {
     /// The bearings of a camera at this height above the floor, in metres, for walls with this stripe.
     pub fn new(stripe: Stripe, height: f64) -> Self {
-        let pixels = (0..BEARINGS)
-            .flat_map(|bearing| {
-                (0..STEPS).map(move |step| {
-                    let point = Point2::from(range(step as f64) * direction(bearing));
-                    GroundView::index(point).unwrap_or_default() as u32
-                })
-            })
-            .collect();
         let width = (0..STEPS).map(|step| {
             let width = match stripe.kind {
                 StripeKind::OnFloor => stripe.width,
@@ -103,41 +103,36 @@ impl Bearings {
             };
             width / GroundView::SCALE
         });
-        Self { pixels, width: width.collect(), stripe }
+        Self { width: width.collect(), stripe }
     }
 
     /// What is seen on each bearing of a ground view.
     // paper: sense.boundary, sense.boundary-points
     pub fn look(&self, view: &GroundView) -> Boundary {
-        let sights = self.pixels.chunks_exact(STEPS).map(|pixels| {
-            let mut classes = [PixelClass::Unseen; STEPS];
-            for (class, &pixel) in classes.iter_mut().zip(pixels) {
-                *class = view.classes[pixel as usize];
-            }
-            self.sight(&classes)
-        });
+        let bearings = view.on_bearings().chunks_exact(STEPS);
+        let sights = bearings.map(|steps| self.sight(|step| Some(view.shown(*steps.get(step)?))));
         Boundary { sights: sights.collect() }
     }
 
-    /// What is seen on one bearing, from its classes, from the robot outwards.
-    fn sight(&self, classes: &[PixelClass]) -> Sight {
+    /// What is seen on one bearing, from the class of each step, from the robot outwards.
+    fn sight(&self, class: impl Fn(usize) -> Option<PixelClass>) -> Sight {
+        let is = |step: usize, wanted: PixelClass| class(step) == Some(wanted);
+        let is_hidden = |mut steps: Range<usize>| steps.any(|step| is(step, PixelClass::Unseen));
+        // The next steps behind one, in which colours mix.
+        let after = |step: usize| step + 1..step + 1 + MIXED_STEPS;
         let mut sight = Sight::default();
         let mut edges = sight.edges.iter_mut();
         let mut floor: Option<usize> = None;
         let (mut step, mut lost) = (0, 0);
-        while let Some(&class) = classes.get(step) {
-            match class {
+        while let Some(here) = class(step) {
+            match here {
                 PixelClass::Floor | PixelClass::Marker => {
                     floor = Some(step);
                     lost = 0;
                 }
                 PixelClass::Stripe => {
                     let from = step;
-                    while classes[step + 1..]
-                        .iter()
-                        .take(SPECK_STEPS)
-                        .any(|&class| class == PixelClass::Stripe)
-                    {
+                    while (step + 1..=step + SPECK_STEPS).any(|next| is(next, PixelClass::Stripe)) {
                         step += 1;
                     }
                     let width = (step + 1 - from) as f64;
@@ -145,10 +140,9 @@ impl Bearings {
                     // show where the floor ends.
                     let before =
                         floor.map_or(0, |floor| floor + 1).max(from.saturating_sub(MIXED_STEPS));
-                    let is_hidden =
-                        is_hidden(&classes[before..from]) || is_hidden(after(classes, step));
                     if let Some(floor) = floor
-                        && !is_hidden
+                        && !is_hidden(before..from)
+                        && !is_hidden(after(step))
                         && width >= MIN_STRIPE_WIDTH * self.width[from]
                     {
                         // The edge is at the end of the floor's last pixel. Floor that was taken for
@@ -160,8 +154,9 @@ impl Bearings {
                         };
                         let widest = MAX_STRIPE_WIDTH * self.width[from] + STRIPE_BLUR;
                         let width = width / widest;
-                        let sure =
-                            seen && width < AREA_WIDTH && !floor_follows(&classes[step + 1..]);
+                        let sure = seen
+                            && width < AREA_WIDTH
+                            && !floor_follows((step + 1..).map_while(&class));
                         let range = range(last as f64 + 0.5);
                         let edge = Edge { range, sure, clear: sure, width };
                         let Some(next) = edges.next() else { break };
@@ -179,7 +174,7 @@ impl Bearings {
             step += 1;
         }
         sight.floor = floor.map_or(0.0, |floor| range(floor as f64 + 0.5));
-        sight.hidden = floor.is_some_and(|floor| is_hidden(after(classes, floor)));
+        sight.hidden = floor.is_some_and(|floor| is_hidden(after(floor)));
         sight
     }
 }
@@ -209,21 +204,10 @@ impl Sight {
     }
 }
 
-/// The next steps behind one, in which colours mix.
-fn after(classes: &[PixelClass], step: usize) -> &[PixelClass] {
-    let behind = &classes[step + 1..];
-    &behind[..behind.len().min(MIXED_STEPS)]
-}
-
-/// Whether a part of these steps is hidden.
-fn is_hidden(classes: &[PixelClass]) -> bool {
-    classes.contains(&PixelClass::Unseen)
-}
-
 /// Whether floor goes on behind a stripe; more stripe does not matter.
-fn floor_follows(behind: &[PixelClass]) -> bool {
-    let behind = behind.iter().filter(|&&class| class != PixelClass::Stripe).take(BEHIND_STEPS);
-    behind.filter(|&&class| class == PixelClass::Floor).count() >= FLOOR_BEHIND_STEPS
+fn floor_follows(behind: impl Iterator<Item = PixelClass>) -> bool {
+    let behind = behind.filter(|&class| class != PixelClass::Stripe).take(BEHIND_STEPS);
+    behind.filter(|&class| class == PixelClass::Floor).count() >= FLOOR_BEHIND_STEPS
 }
 
 fn range(step: f64) -> f64 {
@@ -279,8 +263,12 @@ mod tests {
         letters.chars().flat_map(|letter| [class(letter); 8]).collect()
     }
 
+    fn sight_of(classes: &[PixelClass]) -> Sight {
+        drawn_place::bearings().sight(|step| classes.get(step).copied())
+    }
+
     fn sight(letters: &str) -> Sight {
-        drawn_place::bearings().sight(&on(letters))
+        sight_of(&on(letters))
     }
 
     // paper: sense.boundary, sense.boundary-points
@@ -322,7 +310,7 @@ mod tests {
     fn a_joint_between_tiles_is_narrower_than_the_stripe() {
         let mut classes = on("ffffffffffff");
         classes[40..42].fill(PixelClass::Stripe);
-        assert_eq!(drawn_place::bearings().sight(&classes).edges().count(), 0);
+        assert_eq!(sight_of(&classes).edges().count(), 0);
     }
 
     #[test]

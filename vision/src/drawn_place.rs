@@ -76,7 +76,7 @@ impl DrawnPlace {
                     .unwrap_or(5.0)
             })
             .collect();
-        let mut view = GroundView::unseen();
+        let mut view = GroundView::drawn();
         for (index, class) in view.classes.iter_mut().enumerate() {
             let [x, y] = GroundView::ground(index).into();
             let range = x.hypot(y);

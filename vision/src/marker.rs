@@ -68,11 +68,11 @@ pub fn marker(
 
 /// The points of the floor in the marker's colour, without those far from most of them.
 fn pixels(view: &GroundView, boundary: &Boundary) -> Vec<Point2<f64>> {
-    let on_floor = view.marker.iter().filter_map(|&index| {
-        let point = GroundView::ground(index as usize);
+    let on_floor = view.pixels_of(PixelClass::Marker).into_iter().filter_map(|index| {
+        let point = GroundView::ground(index);
         let sight = boundary.sights[bearing(angle(point.coords))];
         let reach = sight.floor + MAX_BEHIND;
-        (point.coords.norm() <= reach && is_within(view, index as usize)).then_some(point)
+        (point.coords.norm() <= reach && is_within(view, index)).then_some(point)
     });
     let points: Vec<_> = on_floor.collect();
     let middle =
@@ -84,9 +84,7 @@ fn pixels(view: &GroundView, boundary: &Boundary) -> Vec<Point2<f64>> {
 /// Whether the pixels to the left and above have the colour, too; a speck has no such neighbours.
 fn is_within(view: &GroundView, index: usize) -> bool {
     let of_marker = |index: Option<usize>| {
-        index
-            .and_then(|index| view.classes.get(index))
-            .is_some_and(|&class| class == PixelClass::Marker)
+        index.and_then(|index| view.class(index)) == Some(PixelClass::Marker)
     };
     of_marker(index.checked_sub(1)) && of_marker(index.checked_sub(GroundView::SIDE))
 }
@@ -102,7 +100,7 @@ mod tests {
     use crate::drawn_place;
 
     fn floor_with_aid(position: [f64; 2], axis: f64) -> GroundView {
-        let mut view = GroundView::unseen();
+        let mut view = GroundView::drawn();
         for index in 0..view.classes.len() {
             let [x, y] = GroundView::ground(index).into();
             let off = UnitComplex::new(-axis) * Vector2::new(x - position[0], y - position[1]);
@@ -112,9 +110,6 @@ mod tests {
                 () if on_it => PixelClass::Marker,
                 () => PixelClass::Floor,
             };
-            if view.classes[index] == PixelClass::Marker {
-                view.marker.push(index as u32);
-            }
         }
         view
     }

@@ -15,7 +15,7 @@ use crate::{
     colour::{ColourModel, ColourTable, FloorRing, Stripe, StripeKind},
     corner::{Corner, corners},
     geometry::from_robot,
-    ground_view::{GroundView, Unwrapping},
+    ground_view::GroundView,
     hallway::{FittedHallway, hallway},
     junction::{FittedJunction, JunctionSearch, junction},
     line::{WallLine, lines},
@@ -33,7 +33,6 @@ const MIN_FLOOR_BEARINGS: usize = 144;
 #[derive(Clone, Debug)]
 pub struct Sensor {
     camera: Camera,
-    unwrapping: Unwrapping,
     ring: FloorRing,
     bearings: Bearings,
     model: ColourModel,
@@ -108,12 +107,11 @@ impl Sensor {
     pub fn new(camera: &Camera, colours: &ColourModel) -> Self {
         Self {
             camera: camera.clone(),
-            unwrapping: Unwrapping::new(camera),
             ring: FloorRing::new(camera),
             bearings: Bearings::new(colours.stripe, camera.eye_height()),
             colours: colours.table(),
             model: colours.clone(),
-            view: GroundView::unseen(),
+            view: GroundView::unseen(camera),
         }
     }
 
@@ -137,12 +135,12 @@ impl Sensor {
         let gain = match self.model.gain(&self.ring.colours(image)) {
             Ok(gain) => gain,
             Err(light) => {
-                self.view = GroundView::unseen();
+                self.view.clear();
                 let scene = Scene { place: Place::Unknown(light.into()), marker: None };
                 return Ok((scene, SensingTrace::default()));
             }
         };
-        self.unwrapping.view(image, &self.colours.lit(gain), &mut self.view);
+        self.view.show(image, &self.colours.lit(gain));
         Ok(interpreted(&self.view, &self.bearings))
     }
 
@@ -316,7 +314,7 @@ mod tests {
     #[test]
     fn without_floor_or_walls_the_scene_is_unknown_with_a_reason() {
         let reason = |class| {
-            let mut view = GroundView::unseen();
+            let mut view = GroundView::drawn();
             view.classes.fill(class);
             interpreted(&view, &drawn_place::bearings()).0.place
         };

@@ -1,5 +1,7 @@
 //! The light of an image, from the floor beside the robot's body.
 
+use std::ops::RangeInclusive;
+
 use image::RgbImage;
 use nalgebra::Point2;
 use thiserror::Error;
@@ -104,13 +106,20 @@ pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
     let mut floor = median(&lit);
     let mut share = 1.0;
     for _ in 0..4 {
-        let near: Vec<_> = lit.iter().filter(|colour| is_near(floor, **colour)).collect();
-        let count = near.len() as f64;
-        if count > 0.0 {
-            let level = |channel: usize| near.iter().map(move |colour| f64::from(colour[channel]));
-            floor = std::array::from_fn(|channel| level(channel).sum::<f64>() / count);
+        let (mut count, mut sums) = (0_u32, [0_u32; 3]);
+        let near = near(floor);
+        let is_near = |colour: &&[u8; 3]| {
+            let levels = colour.map(|level| f64::from(level).max(NOISE));
+            near.iter().zip(&levels).all(|(near, level)| near.contains(level))
+        };
+        for colour in lit.iter().filter(is_near) {
+            count += 1;
+            sums = std::array::from_fn(|channel| sums[channel] + u32::from(colour[channel]));
         }
-        share = count / ring.len() as f64;
+        if count > 0 {
+            floor = sums.map(|sum| f64::from(sum) / f64::from(count));
+        }
+        share = f64::from(count) / ring.len() as f64;
     }
     if floor.into_iter().fold(0.0, f64::max) < DARK {
         Err(LightError::TooDark)
@@ -121,11 +130,10 @@ pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
     }
 }
 
-fn is_near(floor: [f64; 3], colour: [u8; 3]) -> bool {
-    floor.into_iter().zip(colour).all(|(floor, level)| {
-        let (floor, level) = (floor.max(NOISE), f64::from(level).max(NOISE));
-        level <= floor * SPREAD + NOISE && level >= floor / SPREAD - NOISE
-    })
+/// The levels of each channel that are near the colour of a floor.
+fn near(floor: [f64; 3]) -> [RangeInclusive<f64>; 3] {
+    let floor = floor.map(|level| level.max(NOISE));
+    floor.map(|level| level / SPREAD - NOISE..=level * SPREAD + NOISE)
 }
 
 fn median(colours: &[[u8; 3]]) -> [f64; 3] {

@@ -1,5 +1,7 @@
 //! The classifier as one lookup.
 
+use std::{array::from_fn, sync::LazyLock};
+
 use super::PixelClass;
 
 /// The class of every colour, with six bits per channel.
@@ -27,24 +29,23 @@ fn light(level: f64) -> f64 {
     if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
 }
 
-fn level(light: f64) -> f64 {
-    let part =
-        if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
-    255.0 * part
-}
+/// The light of each level.
+static LIGHTS: LazyLock<[f64; 256]> = LazyLock::new(|| from_fn(|level| light(level as f64)));
+/// The least light of each six bits but the first: levels are rounded.
+static STEPS: LazyLock<[f64; 63]> =
+    LazyLock::new(|| from_fn(|step| light(4.0 * step as f64 + 3.5)));
 
 impl Gain {
     pub(super) fn between(from: [f64; 3], to: [f64; 3]) -> Self {
-        Self(std::array::from_fn(|channel| light(to[channel]) / light(from[channel])))
+        Self(from_fn(|channel| light(to[channel]) / light(from[channel])))
     }
 
     /// For each level of each channel, its part of a colour's index.
     pub(super) fn offsets(self) -> [[u32; 256]; 3] {
-        let lights: [_; 256] = std::array::from_fn(|dark| light(dark as f64));
-        std::array::from_fn(|channel| {
-            lights.map(|light| {
-                let bright = level(light * self.0[channel]).round().clamp(0.0, 255.0);
-                (bright as u32 >> 2) << (12 - 6 * channel)
+        from_fn(|channel| {
+            LIGHTS.map(|light| {
+                let bits = STEPS.partition_point(|&least| least <= light * self.0[channel]);
+                (bits as u32) << (12 - 6 * channel)
             })
         })
     }
@@ -112,7 +113,30 @@ mod tests {
         }
     }
 
+    /// The level of a light, by the curve of sRGB.
+    fn level(light: f64) -> f64 {
+        let part = if light <= 0.003_130_8 {
+            light * 12.92
+        } else {
+            1.055 * light.powf(1.0 / 2.4) - 0.055
+        };
+        255.0 * part
+    }
+
     proptest! {
+        #[test]
+        fn offsets_are_the_upper_bits_of_levels_in_the_other_light(
+            gain in prop::array::uniform3(0.01..100.0_f64),
+        ) {
+            let offsets = Gain(gain).offsets();
+            for channel in 0..3 {
+                for (dark, &offset) in offsets[channel].iter().enumerate() {
+                    let bright = level(light(dark as f64) * gain[channel]).round().min(255.0);
+                    prop_assert_eq!(offset, (bright as u32 >> 2) << (12 - 6 * channel));
+                }
+            }
+        }
+
         #[test]
         fn a_gain_brings_one_colour_to_another(
             from in prop::array::uniform3(4..250_u8), to in prop::array::uniform3(4..250_u8),
