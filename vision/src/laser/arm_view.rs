@@ -32,10 +32,16 @@ const APART: f64 = 0.3;
 /// A wall is straight where it is this near to its usual distance from the line. Logs.
 const STRAIGHT: f64 = 0.25;
 
+/// Lines of sight end in one facing wall if the depths of their ends differ by less than this. Geometry: 16 degrees askew, a
+/// corridor is as deep.
+const THICK: f64 = 0.6;
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ArmView {
     /// Whether free space is seen far enough on one straight line.
     pub is_far: bool,
+    /// How wide the wall is that faces one at the far end of what is seen, in metres: 0 if free space goes on unseen there.
+    pub facing_wall: f64,
     /// The parts of the longest straight line of free space beside which there is a straight wall: on the side with less of it, and on the other one.
     pub walled: [f64; 2],
 }
@@ -61,7 +67,7 @@ impl ArmView {
             line.iter().find(beyond).or(line.last()).map(|&(point, _)| point)
         };
         let Some((mouth, towards)) = behind(MOUTH).zip(behind(AHEAD)) else {
-            return Self { is_far: false, walled: [0.0; 2] };
+            return Self { is_far: false, facing_wall: 0.0, walled: [0.0; 2] };
         };
         let from = if distance(mouth, towards) > 0.5 { mouth } else { meet };
         let ahead = direction(from, towards);
@@ -69,12 +75,15 @@ impl ArmView {
         let starts = ASIDE.map(|aside| mouth + aside * left);
         let (mut longest, mut length) = (Ray { from: mouth, angle: ahead }, 0.0);
         let mut is_far = false;
+        let mut ends = Vec::new();
         'fan: for number in (0..=FAN).flat_map(|number| [number, -number]) {
             let angle = ahead + STEP * f64::from(number);
             for from in starts {
                 let ray = Ray { from, angle };
                 let before = distance(from, meet);
-                let (free, _) = map.sight(from, angle, far - before);
+                let (free, end) = map.sight(from, angle, far - before);
+                let seen = ray.at(free) - mouth;
+                ends.push((seen.dot(&unit(ahead)), seen.dot(&left), end));
                 is_far = free + before >= far;
                 if is_far || free > length {
                     (longest, length) = (ray, free);
@@ -86,8 +95,24 @@ impl ArmView {
         }
         let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, map));
         walled.sort_by(f64::total_cmp);
-        Self { is_far, walled }
+        Self { is_far, facing_wall: facing_wall(&ends), walled }
     }
+}
+
+/// The width of the wall in which lines of sight end, in metres, by how far ahead and how far to the left each one ends, and in
+/// which cell; 0 if one of them ends farther ahead where nothing was seen.
+fn facing_wall(ends: &[(f64, f64, Cell)]) -> f64 {
+    let farthest = |kind: fn(Cell) -> bool| {
+        ends.iter().filter(|end| kind(end.2)).map(|end| end.0).fold(0.0, f64::max)
+    };
+    let wall = farthest(|cell| cell == Cell::Occupied);
+    if farthest(|cell| cell != Cell::Occupied) > wall {
+        return 0.0;
+    }
+    let on_wall = ends.iter().filter(|end| end.2 == Cell::Occupied && end.0 > wall - THICK);
+    let (right, left) = on_wall
+        .fold((f64::MAX, f64::MIN), |(right, left), end| (right.min(end.1), left.max(end.1)));
+    (left - right).max(0.0)
 }
 
 impl Ray {

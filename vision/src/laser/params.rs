@@ -157,7 +157,7 @@ params! {
         max_gap: f64 = 2.1,
         /// A shorter one is a possible arm if the scanner did not look at its end: with an unobstructed view, the gap there
         /// lay this far beyond the field of view, ... Logs and simulated buildings.
-        unseen_turn: f64 = 0.82,
+        unseen_turn: f64 = 0.3,
         /// ... is this many times as wide as the arm, because the edge of the field of view cuts the arm obliquely, ...
         /// Simulated buildings.
         unseen_gap: f64 = 1.3,
@@ -165,6 +165,12 @@ params! {
         unseen_width: f64 = 1.5,
         /// An arm narrower than [`Self::min_width`] whose gap is this many times as wide is a room behind a door. Logs.
         room_gap: f64 = 3.5,
+        /// A way ends where one sees a wall ahead that is this part of its width, ... Geometry: less is furniture.
+        facing_wall: f64 = 0.6,
+        /// ... unless straight walls along this part of it are seen on both sides: then it bends. Logs.
+        bend_wall: f64 = 0.3,
+        /// Two ways around an obstacle are one if they are shorter together. Geometry: an obstacle 2 m long in a corridor.
+        around_obstacle: f64 = 10.0,
         /// Free space that was seen to end goes on nevertheless if a stretch of its border at least this long lies
         /// around a corner, within [`Self::border_near`] of the end. Logs.
         border: f64 = 0.6,

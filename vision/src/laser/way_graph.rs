@@ -166,8 +166,9 @@ impl WayGraph {
     /// removed first, because others become longer by it.
     #[must_use]
     pub(super) fn pruned(mut self, judge: &ArmJudge<'_>, counted: CountedArms) -> (Self, bool) {
-        let mut ways: Vec<usize> = (0..self.ways.len()).collect();
         let mut degrees = self.degrees();
+        while (0..self.ways.len()).any(|way| self.remove_detour(way, judge, &mut degrees)) {}
+        let mut ways: Vec<usize> = (0..self.ways.len()).collect();
         // Whether arms count, by their meet point and their end. Most are the same in the next round.
         let mut known = BTreeMap::new();
         let mut any_in_doubt = false;
@@ -192,13 +193,40 @@ impl WayGraph {
                 }
                 return (self, any_in_doubt);
             };
-            for node in self.ways.swap_remove(shortest).nodes {
-                degrees[node] -= 1;
-                if degrees[node] == 2 && self.join_at(node) {
-                    degrees[node] = 0;
-                }
+            self.remove(shortest, judge, &mut degrees);
+        }
+    }
+
+    /// Removes a way. Two ways that are left at one of its nodes become one.
+    fn remove(&mut self, way: usize, judge: &ArmJudge<'_>, degrees: &mut [usize]) {
+        for node in self.ways.swap_remove(way).nodes {
+            degrees[node] -= 1;
+            if degrees[node] == 2
+                && let Some(joined) = self.join_at(node)
+            {
+                degrees[node] = 0;
+                self.remove_detour(joined, judge, degrees);
             }
         }
+    }
+
+    /// If this way and another one lead around an obstacle in the middle of a corridor, removes the one that the robot drove
+    /// less, or the longer one. Returns whether there was one.
+    fn remove_detour(&mut self, way: usize, judge: &ArmJudge<'_>, degrees: &mut [usize]) -> bool {
+        let Way { nodes: [from, to], length, .. } = self.ways[way];
+        let is_around = |&other: &usize| {
+            let Way { nodes, length: back, .. } = self.ways[other];
+            other != way
+                && from != to
+                && (nodes == [from, to] || nodes == [to, from])
+                && length + back < judge.params.around_obstacle
+        };
+        let Some(other) = (0..self.ways.len()).find(is_around) else { return false };
+        let [one, two] = [way, other].map(|way| judge.driven(&self.ways[way].line));
+        let is_shorter = length < self.ways[other].length;
+        let detour = if one > two || one == two && is_shorter { other } else { way };
+        self.remove(detour, judge, degrees);
+        true
     }
 
     /// Removes a way around an obstacle at the end of an alcove, which is no arm either: one that begins and ends at one
@@ -257,7 +285,7 @@ impl WayGraph {
         };
         let widths = way.line.iter().filter(is_between).map(|&(_, clearance)| 2.0 * clearance);
         let width = median(widths).unwrap_or(2.0 * leaf.clearance);
-        let ArmView { is_far, walled: [less, more] } =
+        let ArmView { is_far, facing_wall, walled: [less, more] } =
             ArmView::new(&way.line, (meet.point, meet.clearance), map, params.sight);
         let has_walls = less >= params.far_walls || more >= params.far_wall;
         if is_far && has_walls {
@@ -272,6 +300,10 @@ impl WayGraph {
         }
         if is_closed {
             return if is_long { ArmStatus::Unseen } else { ArmStatus::Ended };
+        }
+        // A wall faces the junction, and it is not seen that the way bends there: it has a side that no scan shows.
+        if facing_wall >= params.facing_wall * width && less < params.bend_wall {
+            return ArmStatus::Unseen;
         }
         // As wide as a corridor; through the door of a room one sees more than its width.
         let leads_on = (params.min_width..=params.max_width).contains(&width)
@@ -293,11 +325,11 @@ impl WayGraph {
         }
     }
 
-    /// Makes one way of two that end at a node, unless they are both ends of a loop. Returns whether it did.
-    fn join_at(&mut self, node: usize) -> bool {
-        let [one, other] = self.at(node)[..] else { return false };
+    /// Makes one way of two that end at a node, unless they are both ends of a loop. Returns its index.
+    fn join_at(&mut self, node: usize) -> Option<usize> {
+        let [one, other] = self.at(node)[..] else { return None };
         if one == other {
-            return false;
+            return None;
         }
         let [first, second] = [one, other].map(|way| self.ways[way].clone().from_node(node));
         let mut joined = first.reversed();
@@ -306,7 +338,7 @@ impl WayGraph {
         joined.length += second.length;
         self.ways[one] = joined;
         self.ways.swap_remove(other);
-        true
+        Some(one)
     }
 }
 
@@ -449,6 +481,47 @@ mod tests {
             closed.cells[(23 + rows) * closed.columns + column] = Cell::Occupied;
         }
         closed
+    }
+
+    /// A way of 8 m of which no scan shows the wall on the left; its end is a wall if `is_faced`.
+    fn half_seen_way(is_faced: bool) -> Grid {
+        let mut grid = if is_faced { closed_way(53) } else { with_way(53) };
+        for row in 24..76 {
+            grid.cells[row * grid.columns + 124] = Cell::Unknown;
+        }
+        grid
+    }
+
+    #[test]
+    fn a_way_up_to_a_wall_is_no_arm_though_one_of_its_sides_is_not_seen() {
+        let possible = |grid: &Grid| degrees(&[], CountedArms::SeenOrInDoubt, grid);
+        assert_eq!(possible(&half_seen_way(false)), [3], "its end is not seen");
+        assert_eq!(possible(&half_seen_way(true)), Vec::<usize>::new());
+        assert_eq!(degrees(&[], CountedArms::NotEnded, &half_seen_way(true)), [3], "it may bend");
+        // Between walls it is seen to open to the left.
+        let mut bend = closed_way(53);
+        for row in 63..76 {
+            bend.cells[row * bend.columns + 124] = Cell::Unknown;
+        }
+        assert_eq!(possible(&bend), [3]);
+    }
+
+    #[test]
+    fn what_no_scan_shows_behind_a_person_in_an_arm_makes_no_junction() {
+        let mut grid = map(266, 120, &[[[1, 264], [10, 22]], [[123, 137], [23, 118]]]);
+        for row in 36..48 {
+            for column in 129..=131 {
+                grid.cells[row * grid.columns + column] = Cell::Unknown;
+            }
+        }
+        for column in 123..=137 {
+            grid.cells[118 * grid.columns + column] = Cell::Unknown;
+        }
+        let along: Vec<_> =
+            (0..14).map(|metre| Point2::new(18.9, 2.4 + f64::from(metre))).collect();
+        for driven in [&[][..], &along] {
+            assert_eq!(degrees(driven, CountedArms::SeenOrInDoubt, &grid), [3], "{driven:?}");
+        }
     }
 
     #[test]

@@ -289,7 +289,10 @@ fn one_sees_along_a_corridor_as_far_as_it_goes_between_its_walls() {
     let map = map(&[[[5.0, 25.0], [9.0, 11.0]]], &[WEST]);
     for (far, is_far) in [(9.5, true), (14.8, true), (15.3, false)] {
         let view = arm_view(&map, far);
-        assert_eq!(view, ArmView { is_far, walled: [1.0, 1.0] }, "{far}");
+        assert_eq!((view.is_far, view.walled), (is_far, [1.0, 1.0]), "{far}");
+        // Farther than the end, one sees the wall there from one side of the corridor to the other.
+        let facing = if is_far { 0.0..0.1 } else { 1.5..2.1 };
+        assert!(facing.contains(&view.facing_wall), "{far}: {view:?}");
     }
 }
 
@@ -307,7 +310,7 @@ fn a_wall_that_is_missing_on_one_side_is_not_beside_the_arm() {
     // Through glass on both sides nothing is a wall.
     let glass = [[[5.0, 30.0], [11.0, 11.5]], [[5.0, 30.0], [8.5, 9.0]]];
     let view = arm_view(&map(&[[[5.0, 30.0], [9.0, 11.0]]], &[&[WEST][..], &glass].concat()), 9.5);
-    assert_eq!(view, ArmView { is_far: true, walled: [0.0, 0.0] });
+    assert_eq!(view, ArmView { is_far: true, facing_wall: 0.0, walled: [0.0, 0.0] });
 }
 
 #[test]
@@ -345,7 +348,7 @@ fn one_looks_along_an_arm_from_behind_the_walls_of_its_junction() {
     let line: Vec<_> =
         (0..200).map(|at| (Point2::new(10.0 + 0.1 * f64::from(at), 10.0), 1.0)).collect();
     let view = ArmView::new(&line, (line[0].0, 2.0), &map, 9.5);
-    assert_eq!(view, ArmView { is_far: true, walled: [1.0, 1.0] });
+    assert_eq!(view, ArmView { is_far: true, facing_wall: 0.0, walled: [1.0, 1.0] });
 }
 
 #[test]
@@ -406,7 +409,7 @@ fn nothing_is_seen_from_outside_of_a_map() {
 fn nothing_is_seen_along_a_way_of_no_length() {
     let map = map(&[CORRIDOR], &[WEST, EAST]);
     let none = ArmView::new(&[], (Point2::new(10.0, 10.0), 1.0), &map, 9.5);
-    assert_eq!(none, ArmView { is_far: false, walled: [0.0; 2] });
+    assert_eq!(none, ArmView { is_far: false, facing_wall: 0.0, walled: [0.0; 2] });
 }
 
 #[test]
@@ -581,7 +584,7 @@ fn status_of_unseen(width: f64, opening: f64, turn: f64) -> &'static str {
 #[test]
 fn a_short_way_may_be_an_arm_if_the_scanner_did_not_look_at_its_end() {
     assert_eq!(status_of_unseen(2.0, 3.25, 1.1), "in doubt");
-    assert_eq!(status_of_unseen(2.0, 3.25, 0.5), "unseen", "it looked nearly there");
+    assert_eq!(status_of_unseen(2.0, 3.25, -0.1), "unseen", "it looked nearly there");
     assert_eq!(status_of_unseen(2.0, 2.0, 1.1), "unseen", "the gap is as wide as the way");
     // The doors of rooms are narrower, and one sees more than their width behind them.
     assert_eq!(status_of_unseen(1.375, 3.0, 1.1), "in doubt");
