@@ -14,7 +14,7 @@ mod in_some_world;
 mod in_world;
 
 pub use by_algorithm::{AlgorithmSearchBounds, explain_by_algorithm};
-pub use in_some_world::{Explanation, explain};
+pub use in_some_world::{Explanation, explain, explain_by_world};
 pub use in_world::{ChosenAlternative, alternatives_left, choice_in_world, states_after};
 
 use crate::percept::{Door, Percept};
@@ -57,6 +57,16 @@ impl VisitSet {
     /// The place in a corridor where a robot turned back.
     pub fn turned_back() -> Self {
         Self::new([None], VisitWay::Back)
+    }
+
+    /// Without the alternatives whose door does not exist: no robot has taken it.
+    #[must_use]
+    pub fn with_existing_doors(&self) -> Self {
+        let exists = |alternative: &Option<VisitAlternative>| {
+            let Some(VisitAlternative { percept, door }) = alternative else { return true };
+            door.is_none_or(|door| door.0 < percept.degree)
+        };
+        Self::new(self.alternatives.iter().copied().filter(exists), self.way)
     }
 
     pub fn alternatives(&self) -> &[Option<VisitAlternative>] {

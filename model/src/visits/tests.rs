@@ -13,6 +13,7 @@ use crate::{
     mapping::MappingAlgorithm,
     marker::{Directional, Marker, NoMarker},
     percept::Sighting,
+    proof::Proof,
     trace::{
         MatchEnd, Trace, TraceClaim, TraceEventKind, anywhere, match_algorithm, poses,
         tests::{explored_by, lollipop},
@@ -404,9 +405,13 @@ proptest! {
             };
             after.len() == visits.len() && !after[visits.len() - 1].is_empty()
         }));
-        match explain(&visits, marked, 100_000, &()) {
+        let marker = if marked { Directional } else { NoMarker };
+        let (explanation, world) = explain_by_world(&visits, marked, 100_000, &());
+        match explanation {
             Explanation::Explained(choice) => {
                 prop_assert!(in_small, "{choice:?}");
+                let proved = |world| Proof::of_visits_in_world(world, marker, &visits).is_ok();
+                prop_assert!(world.as_ref().is_none_or(proved));
                 let chosen = |(visit, one): (&VisitSet, &_)| visit.alternatives().contains(one);
                 prop_assert!(visits.iter().zip(&choice).all(chosen));
                 prop_assert_eq!(visits.len(), choice.len());
@@ -416,6 +421,7 @@ proptest! {
             }
             Explanation::Impossible { visit } => {
                 prop_assert!(!in_small);
+                prop_assert!(Proof::of_impossible_visits(&visits, visit, marker).is_ok());
                 let before = explain(&visits[..visit], marked, 100_000, &());
                 prop_assert!(matches!(before, Explanation::Explained(_)));
             }
