@@ -23,7 +23,7 @@ use toposlam_model::{
     percept::{Door, Percept, Sighting},
     proof::{Claim, PerceivedRun, Proof, Seen, WalkRecorder},
     trace::{Trace, TraceEventKind, poses},
-    visits::{Explanation, VisitAlternative, VisitSet, VisitWay, explain_by_world},
+    visits::{Explanation, VisitAlternative, VisitSet, VisitWay, explain},
     world::GraphWorld,
 };
 
@@ -340,7 +340,7 @@ fn whether_some_world_explains_visits_is_proved() {
     for number in 0..4_000 {
         let marker = if number % 4 == 0 { NoMarker } else { Directional };
         let visits = random_visits(marker == Directional, &mut random);
-        let found = explain_by_world(&visits, marker == Directional, 1_000_000, &());
+        let found = explain(&visits, marker == Directional, 1_000_000, &());
         let proof = match &found {
             (Explanation::Explained(_), Some(world)) => {
                 counts[0] += 1;

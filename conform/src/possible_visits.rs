@@ -18,7 +18,7 @@ use toposlam_model::{
     percept::{Door, Percept, Sighting},
     visits::{
         AlgorithmSearchBounds, Explanation, VisitAlternative, VisitSet, VisitWay,
-        alternatives_left, explain_by_algorithm, explain_by_world, states_after,
+        alternatives_left, explain, explain_by_algorithm, states_after,
     },
 };
 use toposlam_vision::visits::{VisitPercept, network_fit::NetworkFit};
@@ -126,7 +126,7 @@ impl PossibleVisits {
                 numbered.filter(|&(_, &set)| is_decided(set)).map(|(number, _)| number).collect();
         } else if is_marked || marker == NoMarker {
             let may_contradict = is_marked || sets.iter().any(|set| set.way() == VisitWay::Back);
-            let searched = explain_by_world(&sets, is_marked, MOST_DARTS, watch);
+            let searched = explain(&sets, is_marked, MOST_DARTS, watch);
             judged.fit = match searched.0 {
                 Explanation::Explained(_) if may_contradict => VisitFit::Fits,
                 Explanation::Explained(_) => VisitFit::Anything,

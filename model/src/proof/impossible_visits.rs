@@ -1,5 +1,7 @@
 //! Why no world explains visits: each choice of their alternatives contradicts itself. Beyond the paper.
 
+use std::mem;
+
 use super::{
     NotProved, UnionStep, WalkContradiction,
     folded_walk::{Folding, turned},
@@ -25,6 +27,8 @@ pub enum ChoiceLine {
 
 /// The largest number of lines of such a proof.
 const MOST_LINES: usize = 200_000;
+/// The largest number of visits in such a proof, for the memory.
+const MOST_VISITS: usize = 1000;
 
 /// Shows that no choice of visits up to `last` fits any world with this marker. Returns the visits that contradict each
 /// other, up to this one, with the lines of the proof.
@@ -64,6 +68,9 @@ fn refute(visits: &[VisitSet], marker: MarkerKind) -> Result<Vec<ChoiceLine>, No
     if darts > MAX_DARTS as u64 {
         return Err(NotProved::TooManyDarts);
     }
+    if visits.len() > MOST_VISITS {
+        return Err(NotProved::TooManyChoices);
+    }
     let Some(choices) = choices_of(visits, 0) else { return Err(NotProved::PossibleInSomeWorld) };
     let mut branches = vec![Branch { choices, walk: ChosenWalk::new(marker) }];
     let mut lines = Vec::new();
@@ -72,7 +79,12 @@ fn refute(visits: &[VisitSet], marker: MarkerKind) -> Result<Vec<ChoiceLine>, No
             branches.pop();
             continue;
         };
-        let mut walk = branch.walk.clone();
+        let is_last_choice = branch.choices.is_empty();
+        let mut walk = if is_last_choice {
+            mem::replace(&mut branch.walk, ChosenWalk::new(marker))
+        } else {
+            branch.walk.clone()
+        };
         let visit = branches.len();
         lines.push(ChoiceLine::Choose(chosen));
         let contradiction = walk.visit(visits[visit - 1].way(), vertex).err();

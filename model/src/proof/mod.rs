@@ -69,7 +69,7 @@ impl<'g> Proof<'g> {
         Ok(Self { worlds, marker: Directional, seen: Some(Seen::Walk(walk)), claims: vec![claim] })
     }
 
-    /// That some choice of visits fits the world that [was found](crate::visits::explain_by_world) to explain them.
+    /// That some choice of visits fits the world that [was found](crate::visits::explain) to explain them.
     ///
     /// # Errors
     /// Returns an error if none does.

@@ -51,20 +51,11 @@ struct Branch {
     untried: Vec<(Option<VisitAlternative>, Next)>,
 }
 
-/// Searches for a choice of the visits that some world explains. The robot has a directional marker, or none. `bound` is
-/// the largest number of darts in the trails that are tried, all together: it limits time and memory.
+/// Searches for a choice of the visits that some world explains, and returns a world that does; `None` if a choice without
+/// vertices is explained by all worlds. The robot has a directional marker, or none. If the marker was not seen, it lies
+/// behind the last dart of the world. `bound` is the largest number of darts in the trails that are tried, all together: it
+/// limits time and memory.
 pub fn explain(
-    visits: &[VisitSet],
-    is_marked: bool,
-    bound: usize,
-    watch: &dyn Watch,
-) -> Explanation {
-    explain_by_world(visits, is_marked, bound, watch).0
-}
-
-/// Does the same, and returns a world that explains the choice; `None` if a choice without vertices is explained by all
-/// worlds. If the marker was not seen, it lies behind the last dart of this world.
-pub fn explain_by_world(
     visits: &[VisitSet],
     is_marked: bool,
     bound: usize,

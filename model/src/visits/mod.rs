@@ -14,7 +14,7 @@ mod in_some_world;
 mod in_world;
 
 pub use by_algorithm::{AlgorithmSearchBounds, explain_by_algorithm};
-pub use in_some_world::{Explanation, explain, explain_by_world};
+pub use in_some_world::{Explanation, explain};
 pub use in_world::{ChosenAlternative, alternatives_left, choice_in_world, states_after};
 
 use crate::percept::{Door, Percept};
