@@ -313,7 +313,7 @@ fn random_visits(is_marked: bool, random: &mut TestRng) -> Vec<VisitSet> {
     let mut visits = Vec::new();
     for _ in 0..2 + below(6) {
         let mut alternatives = Vec::new();
-        for _ in 0..1 + below(3) {
+        for _ in 0..=below(3) {
             let degree = 1 + below(3);
             let sighting = match below(4) {
                 0 if is_marked => Sighting::Pointing(Door(below(degree))),
