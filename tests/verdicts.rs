@@ -7,6 +7,7 @@ use std::{
     env, fs,
     path::{Path, PathBuf},
     process::{Command, Output},
+    slice,
     sync::LazyLock,
 };
 
@@ -15,9 +16,14 @@ use proptest::{
     test_runner::{RngAlgorithm, TestRng},
 };
 use toposlam_model::{
+    aid::{Action, Aid, AidKind, State, markers::MOVABLE, pointer::MovablePointer},
     embedded_graph::{Dart, EmbeddedGraph},
     mapping::{MappingAlgorithm, MappingMethod},
-    proof::{Proof, WalkRecorder},
+    marker::{Directional, NoMarker},
+    percept::{Door, Percept, Sighting},
+    proof::{Claim, PerceivedRun, Proof, Seen, WalkRecorder},
+    trace::{Trace, TraceEventKind, poses},
+    visits::{Explanation, VisitAlternative, VisitSet, VisitWay, explain},
     world::GraphWorld,
 };
 
@@ -281,15 +287,141 @@ fn verdicts_about_logs_are_proved() {
     prove("simulate worlds/shape-6.toml --sensor laser --log scans.mcap");
     prove("simulate worlds/shape-8.toml --sensor laser --log more.mcap");
     let known = "--marker none --start any --world worlds/shape-6.toml";
-    for log in ["scans", "more"] {
-        prove(&format!("conform {log}.mcap --events laser --driver anyone {known}"));
+    // Assumed where none was, a marker contradicts what is seen when the robot comes back.
+    for how in [known, "--marker none --corners yes", "--assume-marker --corners yes"] {
+        for log in ["scans", "more"] {
+            prove(&format!("conform {log}.mcap --events laser --driver anyone {how}"));
+        }
     }
+    // A marker that the robot carries.
+    run(&folder, "simulate worlds/shape-6.toml --aid movable --by-scene --log carried.mcap");
+    prove("conform carried.mcap --world worlds/shape-6.toml");
+    prove("conform carried.mcap --world worlds/shape-8.toml");
     readers.prove(&folder, &files);
     let claims: String =
         files.iter().map(|file| fs::read_to_string(folder.join(file)).unwrap()).collect();
-    for claim in ["determined", "unexplained", "conforms", "diverges", "fits", "misfits"] {
+    for claim in
+        ["determined", "unexplained", "conforms", "diverges", "fits", "misfits", "impossible"]
+    {
         assert!(claims.contains(&format!("claim {claim}\n")), "{claim}");
     }
+}
+
+/// Visits of which several percepts are possible, at random: up to three of up to three doors.
+fn random_visits(is_marked: bool, random: &mut TestRng) -> Vec<VisitSet> {
+    let mut below = |most: u32| random.next_u32() % most;
+    let mut visits = Vec::new();
+    for _ in 0..2 + below(6) {
+        let mut alternatives = Vec::new();
+        for _ in 0..=below(3) {
+            let degree = 1 + below(3);
+            let sighting = match below(4) {
+                0 if is_marked => Sighting::Pointing(Door(below(degree))),
+                _ => Sighting::Nothing,
+            };
+            let door = (below(3) > 0).then(|| Door(below(degree)));
+            let vertex = VisitAlternative { percept: Percept { degree, sighting }, door };
+            alternatives.push((below(4) > 0).then_some(vertex));
+        }
+        let way = if below(2) == 0 { VisitWay::Through } else { VisitWay::Back };
+        visits.push(VisitSet::new(alternatives, way));
+    }
+    visits
+}
+
+/// 4,000 sets of visits: that some choice fits a world, or that none does.
+#[test]
+fn whether_some_world_explains_visits_is_proved() {
+    let Some(readers) = Readers::new() else { return };
+    let folder = folder("proofs_of_visits");
+    let mut random = TestRng::from_seed(RngAlgorithm::ChaCha, &[3; 32]);
+    let (mut proofs, mut longest) = (String::new(), 0);
+    let mut counts = [0; 2];
+    for number in 0..4_000 {
+        let marker = if number % 4 == 0 { NoMarker } else { Directional };
+        let visits = random_visits(marker == Directional, &mut random);
+        let found = explain(&visits, marker == Directional, 1_000_000, &());
+        let proof = match &found {
+            (Explanation::Explained(_), Some(world)) => {
+                counts[0] += 1;
+                Proof::of_visits_in_world(world, marker, &visits).unwrap().to_string()
+            }
+            (Explanation::Explained(_), None) => continue,
+            &(Explanation::Impossible { visit }, _) => {
+                counts[1] += 1;
+                Proof::of_impossible_visits(&visits, visit, marker).unwrap().to_string()
+            }
+            (Explanation::NotKnown, _) => panic!("there are few choices"),
+        };
+        longest = longest.max(proof.lines().count());
+        proofs += &proof;
+    }
+    fs::write(folder.join("visits.proof"), proofs).unwrap();
+    readers.prove(&folder, &["visits.proof".to_owned()]);
+    assert!(counts.iter().all(|&count| count > 300) && longest > 300, "{counts:?}, {longest}");
+}
+
+/// A random run in a world with a marker that is carried, of which one percept may be false.
+fn random_run(graph: &EmbeddedGraph, aid: AidKind, random: &mut TestRng) -> Trace {
+    let mut world = GraphWorld::with_aid(graph, aid, Dart(0));
+    let mut below = |most: usize| random.next_u64() as usize % most;
+    let mut events = vec![TraceEventKind::Percept(world.sensed())];
+    let deeds = below(20);
+    for _ in 0..deeds {
+        let actions = world.actions();
+        let handling = actions.iter().copied().find(|action| action.door().is_none());
+        let action = handling.filter(|_| below(2) == 0);
+        let action = action.unwrap_or_else(|| actions[below(actions.len())]);
+        world.act(action).unwrap();
+        let (event, is_seen) = match action {
+            Action::Take(door) => (TraceEventKind::Door(door), true),
+            Action::Do(action) => (TraceEventKind::Action(action), below(2) == 0),
+        };
+        events.push(event);
+        events.extend(is_seen.then(|| TraceEventKind::Percept(world.sensed())));
+    }
+    let at = below(2 * events.len());
+    if let Some(TraceEventKind::Percept(percept)) = events.get_mut(at) {
+        percept.sighting = match percept.sighting {
+            Sighting::Nothing => Sighting::Pointing(Door(below(percept.degree as usize) as u32)),
+            _ => Sighting::Nothing,
+        };
+    }
+    Trace::new(events).unwrap()
+}
+
+/// 1,000 runs with a marker that is carried, in random worlds.
+#[test]
+fn runs_with_a_marker_that_is_carried_are_proved() {
+    let Some(readers) = Readers::new() else { return };
+    let folder = folder("proofs_of_runs");
+    let mut random = TestRng::from_seed(RngAlgorithm::ChaCha, &[4; 32]);
+    let mut proofs = String::new();
+    let mut conforming = 0;
+    for number in 0..1_000 {
+        let graph = random_start(4, &mut random);
+        let aid = if number % 2 == 0 { MOVABLE.into() } else { AidKind::Pointer(MovablePointer) };
+        let trace = random_run(&graph, aid, &mut random);
+        let placed = aid.placed(&graph, Dart(0));
+        let states = graph.darts().map(|pose| State { pose, placed: placed.clone() });
+        let (fit, misfit): (Vec<_>, Vec<_>) = states
+            .map(|state| {
+                let fits = poses(&graph, &aid, slice::from_ref(&state), &trace).misfit.is_none();
+                (state.pose, fits)
+            })
+            .partition(|&(_, fits)| fits);
+        conforming += usize::from(!fit.is_empty());
+        let conform = fit.into_iter().map(|(from, _)| Claim::Conforms { from });
+        let misfit: Vec<Dart> = misfit.into_iter().map(|(pose, _)| pose).collect();
+        let diverge = (!misfit.is_empty()).then_some(Claim::Diverges { from: Some(misfit) });
+        let seen = Some(Seen::Run(PerceivedRun::new(aid, &trace).unwrap()));
+        let claims = conform.chain(diverge).collect();
+        let proof = Proof { worlds: vec![(&graph, Dart(0))], marker: NoMarker, seen, claims };
+        proofs += &proof.to_string();
+    }
+    fs::write(folder.join("runs.proof"), proofs).unwrap();
+    readers.prove(&folder, &["runs.proof".to_owned()]);
+    assert!((300..900).contains(&conforming), "{conforming}");
 }
 
 /// Examples of every kind, and what is wrong in one thing.

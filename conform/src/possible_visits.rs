@@ -12,6 +12,7 @@ use serde::Serialize;
 use toposlam_model::{
     aid::State,
     enumerate::Watch,
+    folding::ClosedTrail,
     mapping::MappingMethod,
     marker::{Directional, MarkerKind, NoMarker},
     percept::{Door, Percept, Sighting},
@@ -55,6 +56,9 @@ pub struct PossibleVisits {
     /// The visits with what the scans cannot exclude.
     #[serde(skip)]
     pub(super) sets: Vec<VisitSet>,
+    /// The search for a choice that some world explains, with this world, if none is known.
+    #[serde(skip)]
+    pub(super) searched: Option<(Explanation, Option<ClosedTrail>)>,
     /// Whether the robot may have taken any doors: those of an algorithm depend on the percepts.
     #[serde(skip)]
     by_anyone: bool,
@@ -122,12 +126,14 @@ impl PossibleVisits {
                 numbered.filter(|&(_, &set)| is_decided(set)).map(|(number, _)| number).collect();
         } else if is_marked || marker == NoMarker {
             let may_contradict = is_marked || sets.iter().any(|set| set.way() == VisitWay::Back);
-            judged.fit = match explain(&sets, is_marked, MOST_DARTS, watch) {
+            let searched = explain(&sets, is_marked, MOST_DARTS, watch);
+            judged.fit = match searched.0 {
                 Explanation::Explained(_) if may_contradict => VisitFit::Fits,
                 Explanation::Explained(_) => VisitFit::Anything,
                 Explanation::Impossible { .. } => VisitFit::Contradiction,
                 Explanation::NotKnown => VisitFit::NotKnown,
             };
+            judged.searched = Some(searched);
         }
         judged.algorithm = judged.follow(&sets, config, watch);
         judged.sets = sets;

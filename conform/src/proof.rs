@@ -1,34 +1,44 @@
 //! The proof of a judgement, as far as it is about percepts and doors: what an algorithm would have done is no part of it.
 //! Beyond the paper.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, slice};
 
 use toposlam_model::{
     aid::State,
     embedded_graph::{Dart, EmbeddedGraph},
     folding::SmallestWorld,
-    marker::MarkerKind,
-    proof::{Claim, NotProved, PerceivedWalk, Proof, Seen, unexplained},
-    visits::{VisitAlternative, VisitSet, choice_in_world},
+    marker::{MarkerKind, NoMarker},
+    proof::{Claim, NotProved, PerceivedRun, PerceivedWalk, Proof, Seen, unexplained},
+    trace::poses,
+    visits::{Explanation, VisitSet, choice_in_world},
 };
 
-use super::{check::CheckedLog, known_world::KnownWorld, possible_visits::VisitFit};
+use super::{
+    check::CheckedLog,
+    config::ConformConfig,
+    known_world::KnownWorld,
+    possible_visits::{PossibleVisits, VisitFit},
+};
 
 impl CheckedLog {
     /// The proofs of what the recorded percepts and doors show. In a known world: that they are a walk in it, or from none of
     /// the possible starts. Otherwise: that they determine their world, that no world gives them, or a world that does.
+    /// Of visits with several possible percepts: that some choice fits the known world or a world that was found, or that
+    /// none does. Of a run with a marker that is carried: what is so in a known world.
     ///
     /// # Errors
     /// Returns an error if there is no proof of this kind.
     pub fn proofs(&self) -> Result<Vec<Proof<'_>>, NotProved> {
         let judgement = &self.judgement;
-        let marker = self.config.aid.fixed().ok_or(NotProved::Aid(self.config.aid.name()))?;
+        let Some(marker) = self.config.aid.fixed() else { return self.proofs_of_run() };
         if let Some(possible) = &judgement.possible {
-            let known = self.config.world.as_ref().ok_or(NotProved::Possible)?;
             if possible.fit == VisitFit::UnseenWay {
                 return Err(NotProved::UnseenWay);
             }
-            return Ok(of_visits(known, marker, &possible.sets));
+            return match &self.config.world {
+                Some(known) => Ok(of_visits(known, marker, &possible.sets)),
+                None => of_visits_in_some_world(possible, marker).map(|proof| vec![proof]),
+            };
         }
         let trace = &judgement.trace;
         if judgement.lost.is_some() || !trace.relocations().is_empty() {
@@ -46,6 +56,36 @@ impl CheckedLog {
             return Err(NotProved::NoWorldFound);
         };
         in_found_world((graph, *place), marker, walk).map(|proof| vec![proof])
+    }
+
+    /// That a run with a marker that the robot carries is one in the known world, or a proof for each place of the marker that
+    /// it is not.
+    fn proofs_of_run(&self) -> Result<Vec<Proof<'_>>, NotProved> {
+        let ConformConfig { aid, world, .. } = &self.config;
+        let trace = &self.judgement.trace;
+        if self.judgement.lost.is_some() || !trace.relocations().is_empty() {
+            return Err(NotProved::Lost);
+        }
+        let run = PerceivedRun::new(*aid, trace)?;
+        let known = world.as_ref().ok_or(NotProved::AidWithoutWorld(aid.name()))?;
+        let graph = &known.graph;
+        let proof = |facing, claim| Proof {
+            worlds: vec![(graph, facing)],
+            marker: NoMarker,
+            seen: Some(Seen::Run(run.clone())),
+            claims: vec![claim],
+        };
+        let mut starts: BTreeMap<Dart, Vec<Dart>> = BTreeMap::new();
+        for state in &known.states {
+            let facing = state.placed.first().copied().flatten().ok_or(NotProved::NoWorldFound)?;
+            if poses(graph, aid, slice::from_ref(state), trace).misfit.is_none() {
+                return Ok(vec![proof(facing, Claim::Conforms { from: state.pose })]);
+            }
+            starts.entry(facing).or_default().push(state.pose);
+        }
+        let diverges =
+            |(facing, poses)| proof(facing, Claim::Diverges { from: unless_all(poses, graph) });
+        Ok(starts.into_iter().map(diverges).collect())
     }
 }
 
@@ -66,16 +106,7 @@ fn unless_all(poses: Vec<Dart>, graph: &EmbeddedGraph) -> Option<Vec<Dart>> {
 /// That some choice of visits fits a known world, or a proof for each place of the marker that none does.
 fn of_visits<'w>(known: &'w KnownWorld, marker: MarkerKind, visits: &[VisitSet]) -> Vec<Proof<'w>> {
     let graph = &known.graph;
-    let exists = |alternative: &Option<VisitAlternative>| {
-        let Some(VisitAlternative { percept, door }) = alternative else { return true };
-        door.is_none_or(|door| door.0 < percept.degree)
-    };
-    // No robot has taken a door that does not exist.
-    let possible = |visit: &VisitSet| {
-        let alternatives = visit.alternatives().iter().copied();
-        VisitSet::new(alternatives.filter(exists), visit.way())
-    };
-    let visits: &Vec<_> = &visits.iter().map(possible).collect();
+    let visits: &Vec<_> = &visits.iter().map(VisitSet::with_existing_doors).collect();
     let proof = |facing, claim| {
         let seen = Some(Seen::Visits(visits.clone()));
         Proof { worlds: vec![(graph, facing)], marker, seen, claims: vec![claim] }
@@ -89,6 +120,24 @@ fn of_visits<'w>(known: &'w KnownWorld, marker: MarkerKind, visits: &[VisitSet])
     let misfits =
         |(facing, poses)| proof(facing, Claim::Misfits { from: unless_all(poses, graph) });
     starts_of(known).into_iter().map(misfits).collect()
+}
+
+/// That some choice of visits fits a world that was found, or that none fits any world.
+fn of_visits_in_some_world(
+    possible: &PossibleVisits,
+    marker: MarkerKind,
+) -> Result<Proof<'_>, NotProved> {
+    let (explanation, world) = possible.searched.as_ref().ok_or(NotProved::Possible)?;
+    match explanation {
+        Explanation::Explained(_) => {
+            let world = world.as_ref().ok_or(NotProved::NoWorldFound)?;
+            Proof::of_visits_in_world(world, marker, &possible.sets)
+        }
+        &Explanation::Impossible { visit } => {
+            Proof::of_impossible_visits(&possible.sets, visit, marker)
+        }
+        Explanation::NotKnown => Err(NotProved::SearchEnded),
+    }
 }
 
 /// That a walk is one in a known world, or a proof for each place of the marker that it is not.

@@ -55,7 +55,7 @@ Inductive reason :=
   | ImageShared of N | ImageTwice | WalksTooMany
   | PosesLeftOut of N | OtherPose of N
   (* Visits. *)
-  | NoAlternative of N | NotSo | VisitsMade.
+  | NoAlternative of N | NotSo | VisitsMade | ChoiceMissing.
 
 Inductive outcome := Accepted | Refused of place & reason.
 
@@ -252,6 +252,51 @@ Fixpoint remain (T : tables) (marker : marker_word) (poses : seq (N * N)) (seen 
             seen doors
       end
   end.
+
+(** * Runs with a marker that is carried *)
+
+Section Runs.
+
+Variables (T : tables) (aid : aid_word).
+
+(** Whether the marker lies where the robot is. It lies at the vertex of a dart, or the robot carries it. *)
+Definition lies_in (d : N) (place : option N) : bool := if place is Some spot then same_vertex_in T d spot else false.
+
+Definition aid_seen_in (d : N) (place : option N) : sighting_word :=
+  if place is Some spot then
+    if same_vertex_in T d spot then
+      match aid with WordMovable => WordLying | WordMovableDirectional => WordPointing (door_in T d spot) end
+    else WordNothing
+  else WordNothing.
+
+Definition senses_in (d : N) (place : option N) (seen : N * sighting_word) : bool :=
+  (seen.1 == degree_in T d) && same_sighting seen.2 (aid_seen_in d place).
+
+(** The pose, and the place of the marker, after what was done, if that is possible. *)
+Definition after_deed (d : N) (place : option N) (done : deed) : option (N * option N) :=
+  match done with
+  | DeedDoor i => if N.ltb i (degree_in T d) then Some (traverse_in T d i, place) else None
+  | DeedPickUp => if lies_in d place then Some (d, None) else None
+  | DeedDrop => if place is None then Some (d, Some d) else None
+  end.
+
+(** The first deed from here on, with its number, that is not possible, or after which the robot perceives something
+    else. *)
+Fixpoint wrong_deed (number : N) (d : N) (place : option N) (deeds : seq (deed * option (N * sighting_word))) :
+    option N :=
+  if deeds is (done, seen) :: others then
+    if after_deed d place done is Some (e, place') then
+      if (if seen is Some seen then senses_in e place' seen else true) then wrong_deed (N.succ number) e place' others
+      else Some number
+    else Some number
+  else None.
+
+(** From this pose: the number of the first thing in the run that is wrong, where 0 is what it perceived at first. *)
+Definition wrong_in_run (r : run_text) (d : N) : option N :=
+  let place := Some (facing_dart T) in
+  if senses_in d place (first_see r) then wrong_deed 1%num d place (deed_lines r) else Some N0.
+
+End Runs.
 
 (** * Visits *)
 
@@ -559,6 +604,120 @@ Definition not_contradictory (k : knowledge) (c : contradiction) : option reason
 
 End Steps.
 
+(** * Choices of visits in any world *)
+
+(** A walk of the alternatives that are chosen of the visits so far. A robot begins without a percept. Then it leaves
+    the last vertex of the walk by a door, and perhaps it turns back in the corridor behind it. *)
+Inductive choice_walk := Begins | Leaves of bool & N & walked & knowledge.
+
+(** A walk with one percept; and the same walk with one more move. Its lines are in reverse order, so that longer walks
+    share them. *)
+Definition first_visit (seen : N * sighting_word) : walked := walked_of (WalkText [:: seen] [::]).
+
+Definition next_visit (w : walked) (door : N) (seen : N * sighting_word) : walked :=
+  Walked (WalkText (seen :: see_lines (walk_of w)) (door :: door_lines (walk_of w)))
+    (put (percept_at w) (visits w) seen) (put (door_at w) (moves w) door) (N.succ (visits w)) (N.succ (moves w)).
+
+Definition in_order (w : walked) : walked :=
+  Walked (WalkText (rev (see_lines (walk_of w))) (rev (door_lines (walk_of w))))
+    (percept_at w) (door_at w) (visits w) (moves w).
+
+(** Only one contradiction is about the lines. *)
+Definition walk_for (c : contradiction) (w : walked) : walked := if c is ByNoMarker then in_order w else w.
+
+Section Choices.
+
+Variable marker : marker_word.
+
+(** Whether a vertex can have both percepts: with some pose, and with that which is [turn] doors further. *)
+Definition seen_again (turn : N) (seen seen' : N * sighting_word) : bool :=
+  (seen.1 == seen'.1) &&
+  match marker, seen.2, seen'.2 with
+  | (WordUndirectedEdge | WordDirectedEdge), _, _ => true
+  | _, WordPointing i, WordPointing j => N.modulo (N.add turn j) seen.1 == N.modulo i seen.1
+  | _, s, s' => same_sighting s s'
+  end.
+
+(** The walk with an alternative of the next visit: none, if the robot has turned back to a vertex with another percept.
+    At the last visit the door is of no account. *)
+Definition with_choice (back : bool) (a : alternative) (c : choice_walk) : option choice_walk :=
+  match a, c with
+  | NoVertex, Begins => Some Begins
+  | NoVertex, Leaves turned i w k => Some (Leaves (back (+) turned) i w k)
+  | Junction seen door, Begins => Some (Leaves false (odflt N0 door) (first_visit seen) nothing_known)
+  | Junction seen door, Leaves false i w k => Some (Leaves false (odflt N0 door) (next_visit w i seen) k)
+  | Junction seen door, Leaves true i w k =>
+      let last := N.pred (visits w) in
+      let degree := degree_at w last in
+      if seen_again i (degree, sighting_at w last) seen
+      then Some (Leaves false (N.modulo (N.add i (odflt N0 door)) degree) w k) else None
+  end.
+
+(** The numbers from [i] on and below [n], if a list is as long. *)
+Fixpoint numbers_below T (fuel : seq T) (i n : N) : option (seq N) :=
+  if i == n then Some [::]
+  else if fuel is _ :: fuel then omap (cons i) (numbers_below fuel (N.succ i) n) else None.
+
+(** What can be chosen of some alternatives, from this number on: each with its number, and the door that is chosen, if
+    it is not known. *)
+Fixpoint all_choices T (fuel : seq T) (last : bool) (number : N) (alternatives : seq alternative) :
+    option (seq (N * option N * alternative)) :=
+  if alternatives is a :: others then
+    if all_choices fuel last (N.succ number) others is Some later then
+      match a, last with
+      | Junction seen None, false =>
+          omap (fun doors => map (fun i => (number, Some i, Junction seen (Some i))) doors ++ later)
+            (numbers_below fuel N0 seen.1)
+      | _, _ => Some ((number, None, a) :: later)
+      end
+    else None
+  else Some [::].
+
+(** What is known after the lines that unite darts, and the other lines; or the lines from the first that does not. *)
+Fixpoint unite_all (w : walked) (k : knowledge) (lines : seq choice_line) :
+    knowledge * seq choice_line + seq choice_line * reason :=
+  if lines is Unite s :: others then
+    match after marker w k s with
+    | inl k => unite_all w k others
+    | inr reason => inr (lines, reason)
+    end
+  else inl (k, lines).
+
+(** The lines after those which show that no choice of the visits goes on a walk; or the lines from the first that is
+    wrong. *)
+Fixpoint refute (vs : seq visit_text) (c : choice_walk) (lines : seq choice_line) :
+    seq choice_line + seq choice_line * reason :=
+  if vs is v :: others then
+    let fix refute_each choices lines :=
+      match choices, lines with
+      | [::], _ => inl lines
+      | (n, door, a) :: choices, Choose n' door' :: after_choice =>
+          if (n, door) != (n', door') then inr (lines, ChoiceMissing)
+          else
+            let closed :=
+              match with_choice (turned_back v) a c, after_choice with
+              | None, CloseBack :: rest => inl rest
+              | None, _ => inr (after_choice, ChoiceMissing)
+              | Some Begins, _ => refute others Begins after_choice
+              | Some (Leaves turned i w k), _ =>
+                  match unite_all w k after_choice with
+                  | inr wrong => inr wrong
+                  | inl (k, Close contra :: rest) =>
+                      if not_contradictory marker (walk_for contra w) k contra is Some reason
+                      then inr (Close contra :: rest, reason)
+                      else inl rest
+                  | inl (k, rest) => refute others (Leaves turned i w k) rest
+                  end
+              end in
+            match closed with inl rest => refute_each choices rest | inr wrong => inr wrong end
+      | _, _ => inr (lines, ChoiceMissing)
+      end in
+    if all_choices lines (nilp others) N0 (alternatives v) is Some choices then refute_each choices lines
+    else inr ([::], LengthsDiffer)
+  else inr (lines, ChoiceMissing).
+
+End Choices.
+
 (** * Pairs, images and walks from two poses *)
 
 (** Two worlds with their markers. *)
@@ -692,6 +851,18 @@ Definition check_diverges (marker : marker_word) (T : tables) (w : walked) (from
       Refused InClaim (GivesAll d)
     else Accepted.
 
+Definition check_runs (T : tables) (r : run_text) (from : N) : outcome :=
+  if ~~ has_entry (dart_set T) from then Refused InClaim (NoDart from)
+  else if wrong_in_run T (aid_line r) r from is Some n then Refused (AtVisit n) NotSo
+  else Accepted.
+
+Definition check_runs_nowhere (T : tables) (r : run_text) (from : option (seq N)) : outcome :=
+  let poses := odflt (dart_list T) from in
+  if first_not (has_entry (dart_set T)) poses is Some d then Refused InClaim (NoDart d)
+  else if first_not (fun d => if wrong_in_run T (aid_line r) r d is Some _ then true else false) poses is Some d then
+    Refused InClaim (GivesAll d)
+  else Accepted.
+
 Definition check_isomorphic (T U : tables) (pairs : seq (N * N)) : outcome :=
   let images := image_table pairs in
   let origins := foldl (fun t pair => put t pair.2 pair.1) empty pairs in
@@ -726,25 +897,35 @@ Definition check_misfits (marker : marker_word) (T : tables) (visits : seq visit
   else if after_visits T marker visits poses is [::] then Accepted
   else Refused InClaim VisitsMade.
 
+Definition check_impossible (marker : marker_word) (visits : seq visit_text) (lines : seq choice_line) : outcome :=
+  match refute marker visits Begins lines with
+  | inl [::] => Accepted
+  | inl rest => Refused (AtPart (N.sub (length lines) (length rest))) ChoiceMissing
+  | inr (rest, reason) => Refused (AtPart (N.sub (length lines) (length rest))) reason
+  end.
+
 (** The checker. *)
 Definition check (p : prepared) (c : claim) : outcome :=
   let marker := marker_line (set p) in
   if world_wrong p is Some (i, reason) then Refused (InWorld i) reason
   else
-    match c, world_tables p, walk_tables p, visits_line (set p) with
-    | Determined from steps, [:: (_, T)], Some w, None => check_determined marker T w from steps
-    | Unexplained steps c, [::], Some w, None => check_unexplained marker w steps c
-    | Conforms from, [:: (_, T)], Some w, None => check_conforms marker T w from
-    | Diverges from, [:: (_, T)], Some w, None => check_diverges marker T w from
-    | Indistinguishable pairs, [:: (_, T); (_, U)], None, None =>
+    match c, world_tables p, walk_tables p, visits_line (set p), run_line (set p) with
+    | Determined from steps, [:: (_, T)], Some w, None, None => check_determined marker T w from steps
+    | Unexplained steps c, [::], Some w, None, None => check_unexplained marker w steps c
+    | Conforms from, [:: (_, T)], Some w, None, None => check_conforms marker T w from
+    | Diverges from, [:: (_, T)], Some w, None, None => check_diverges marker T w from
+    | Indistinguishable pairs, [:: (_, T); (_, U)], None, None, None =>
         if pairs is [::] then Refused InClaim NothingClaimed
         else refused_at (wrong_pair T U marker marker (pair_table pairs) N0 pairs)
-    | Distinguishable walks, [:: (_, T); (_, U)], None, None =>
+    | Distinguishable walks, [:: (_, T); (_, U)], None, None, None =>
         if walks is [::] then Refused InClaim NothingClaimed
         else refused_at (not_all_distinguished T U marker marker N0 walks)
-    | Isomorphic pairs, [:: (_, T); (_, U)], None, None => check_isomorphic T U pairs
-    | NotIsomorphic walks, [:: (_, T); (_, U)], None, None => check_not_isomorphic T U walks
-    | Fits from choices, [:: (_, T)], None, Some visits => check_fits marker T visits from choices
-    | Misfits from, [:: (_, T)], None, Some visits => check_misfits marker T visits from
-    | _, _, _, _ => Refused InClaim WrongParts
+    | Isomorphic pairs, [:: (_, T); (_, U)], None, None, None => check_isomorphic T U pairs
+    | NotIsomorphic walks, [:: (_, T); (_, U)], None, None, None => check_not_isomorphic T U walks
+    | Fits from choices, [:: (_, T)], None, Some visits, None => check_fits marker T visits from choices
+    | Misfits from, [:: (_, T)], None, Some visits, None => check_misfits marker T visits from
+    | Impossible lines, [::], None, Some visits, None => check_impossible marker visits lines
+    | Conforms from, [:: (_, T)], None, None, Some r => check_runs T r from
+    | Diverges from, [:: (_, T)], None, None, Some r => check_runs_nowhere T r from
+    | _, _, _, _, _ => Refused InClaim WrongParts
     end.

@@ -4,7 +4,7 @@ From Coq Require Import BinNat FMapPositive.
 From Coq Require Nnat.
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Markers Walks Parts Bisimulation Separates Verdicts Checker CheckerTables
-  CheckerWorlds CheckerSteps.
+  CheckerWorlds CheckerSteps CheckerChoices CheckerRuns.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -432,14 +432,14 @@ Qed.
 Lemma checker_sound (s : setting) (c : claim) : check (prepare s) c = Accepted -> claim_true s c.
 Proof.
 rewrite /check; case wrongE: (world_wrong _) => [[i reason]|] //.
-case: s wrongE => ts marker walk visits /= /first_wrongP right.
+case: s wrongE => ts marker walk visits run /= /first_wrongP right.
 have right_t t us : ts = t :: us -> wrong_world t (tables_of t) = None.
   by move=> tsE; have := right 0; rewrite tsE => /(_ isT t (tables_of t)).
 have right_u t u us : ts = [:: t, u & us] -> wrong_world u (tables_of u) = None.
   by move=> tsE; have := right 1; rewrite tsE => /(_ isT t (tables_of t)).
-case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks|from choices|from] /=.
+case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks|from choices|from|lines] /=.
 - case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [text|] //=.
-  case: visits => [?|] //=; rewrite /check_determined; case: marker => //; case: ifP => // /negbFE from_in.
+  case: visits run => [?|] [?|] //=; rewrite /check_determined; case: marker => //; case: ifP => // /negbFE from_in.
   case differsE: (differs _ _ _ _ _ _) => [[visit reason]|] //.
   case knowsE: (after_all _ _ _ _ _) => [k|[? ?]] //; case: ifP => // complete_k _.
   apply: in_worldP => // W number T_fits; have /(dart_setP T_fits)[p pE] := from_in.
@@ -451,18 +451,29 @@ case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks|from choic
   apply: (covers_alike (w := walked_of text) (k := k)) => //; try exact: knows_at.
   by apply: (@complete_covers WordDirectional _ _ erefl _ p p_sees) => //; apply: knows_at.
 - case: ts {right right_u right_t} => //=; case: walk => [text|] //=.
-  case: visits => [?|] //=; rewrite /check_unexplained; case: ifP => // _.
+  case: visits run => [?|] [?|] //=; rewrite /check_unexplained; case: ifP => // _.
   case knowsE: (after_all _ _ _ _ _) => [k|[? ?]] //.
   case contraE: (not_contradictory _ _ _ _) => // _ V q [sees doors_exist].
   have known := knows_after_all erefl sees (knows_nothing q) knowsE.
   exact: (contradicted erefl sees known doors_exist contraE).
-- case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [text|] //=.
-  case: visits => [?|] //=; rewrite /check_conforms; case: ifP => // /negbFE from_in.
+- case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [text|] //=; last first.
+    case: visits run => [?|] [r|] //=; rewrite /check_runs; case: ifP => // /negbFE from_in.
+    case wrongE: (wrong_in_run _ _ _ _) => // _.
+    apply: in_worldP => // W number T_fits; have /(dart_setP T_fits)[p pE] := from_in.
+    by exists p => //; rewrite -pE in wrongE; apply/(wrong_in_runE r p T_fits).
+  case: visits run => [?|] [?|] //=; rewrite /check_conforms; case: ifP => // /negbFE from_in.
   case differsE: (differs _ _ _ _ _ _) => [[visit reason]|] // _.
   apply: in_worldP => // W number T_fits; have /(dart_setP T_fits)[p pE] := from_in.
   by exists p => //; rewrite -pE in differsE; apply: differsP differsE.
-- case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [text|] //=.
-  case: visits => [?|] //=; rewrite /check_diverges; set poses := odflt _ _; case: (first_not _ _) => //.
+- case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [text|] //=; last first.
+    case: visits run => [?|] [r|] //=; rewrite /check_runs_nowhere; set poses := odflt _ _; case: (first_not _ _) => //.
+    set differs_from := (X in first_not X).
+    case: (first_not _ _) (@first_notP differs_from poses) => // /(_ erefl) all_differ _.
+    apply: in_worldP => // W number T_fits p p_in /(wrong_in_runE r p T_fits) runs_p.
+    have p_poses : number p \in poses.
+      by rewrite /poses; case: from p_in {poses all_differ} => //= _; apply/(dart_listP T_fits); exists p.
+    by have := all_differ _ p_poses; rewrite /differs_from runs_p.
+  case: visits run => [?|] [?|] //=; rewrite /check_diverges; set poses := odflt _ _; case: (first_not _ _) => //.
   set both := foldl _ _ _.
   case remainE: (remain _ _ _ _ _) => [|[? ?] ?] // _.
   apply: in_worldP => // W number T_fits p p_in [sees doors_exist].
@@ -471,36 +482,38 @@ case: c => [from steps|steps contra|from|from|pairs|walks|pairs|walks|from choic
     by rewrite /poses; case: from p_in {poses both remainE} => //= _; apply/(dart_listP T_fits); exists p.
   exact: (mem_fold_filter (test := xpredT) (fun d => (d, d)) [::] p_poses).
 - case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-  case: walk => [?|] //=; case: visits => [?|] //=.
+  case: walk => [?|] //=; case: visits run => [?|] [?|] //=.
   case: pairs => // pair pairs; set all_pairs := pair :: pairs; rewrite /refused_at.
   case wrongE: (wrong_pair _ _ _ _ _ _ _) => [[? ?]|] // _.
   apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits [x y] in_pairs.
   have [p [q [pE qE same]]] := pairs_alike T_fits U_fits wrongE in_pairs.
   by exists p => //; exists q.
 - case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-  case: walk => [?|] //=; case: visits => [?|] //=.
+  case: walk => [?|] //=; case: visits run => [?|] [?|] //=.
   case: walks => // first walks; set all_walks := first :: walks; rewrite /refused_at.
   case wrongE: (not_all_distinguished _ _ _ _ _ _) => [[? ?]|] // _.
   apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits pair doors in_walks.
   have [p [q [pE qE apart]]] := not_all_distinguishedP T_fits U_fits wrongE in_walks.
   by exists p => //; exists q.
 - case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-  case: walk => [?|] //=; case: visits => [?|] //= accepted.
+  case: walk => [?|] //=; case: visits run => [?|] [?|] //= accepted.
   apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
   exact: (images_isomorphic T_fits U_fits accepted).
 - case: ts right_t right_u {right} => [|t [|u [|? ?]]] //= /(_ _ _ erefl) t_right /(_ _ _ _ erefl) u_right.
-  case: walk => [?|] //=; case: visits => [?|] //= accepted.
+  case: walk => [?|] //=; case: visits run => [?|] [?|] //= accepted.
   apply: in_worldP => // V number T_fits; apply: in_worldP => // W number' U_fits.
   exact: (walks_not_isomorphic T_fits U_fits accepted).
 - case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [?|] //=.
-  case: visits => [visits|] //=; rewrite /check_fits; case: ifP => // /negbFE from_in; rewrite /refused_at.
+  case: visits run => [visits|] [?|] //=; rewrite /check_fits; case: ifP => // /negbFE from_in; rewrite /refused_at.
   case wrongE: (wrong_choice _ _ _ _ _ _) => [[? ?]|] // _.
   apply: in_worldP => // W number T_fits; have /(dart_setP T_fits)[p pE] := from_in.
   by exists p => //; rewrite -pE in wrongE; apply: wrong_choiceP wrongE.
-case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [?|] //=.
-case: visits => [visits|] //=; rewrite /check_misfits; set poses := odflt _ _; case: (first_not _ _) => //.
-case afterE: (after_visits _ _ _ _) => [|? ?] // _.
-apply: in_worldP => // W number T_fits p p_in p_makes.
-suff p_poses : number p \in poses by apply: (after_visitsP T_fits p_makes p_poses afterE).
-by rewrite /poses; case: from p_in {poses afterE} => //= _; apply/(dart_listP T_fits); exists p.
+- case: ts right_t {right right_u} => [|t [|? ?]] //= /(_ _ _ erefl) t_right; case: walk => [?|] //=.
+  case: visits run => [visits|] [?|] //=; rewrite /check_misfits; set poses := odflt _ _; case: (first_not _ _) => //.
+  case afterE: (after_visits _ _ _ _) => [|? ?] // _.
+  apply: in_worldP => // W number T_fits p p_in p_makes.
+  suff p_poses : number p \in poses by apply: (after_visitsP T_fits p_makes p_poses afterE).
+  by rewrite /poses; case: from p_in {poses afterE} => //= _; apply/(dart_listP T_fits); exists p.
+case: ts {right right_u right_t} => //=; case: walk => [?|] //=; case: visits run => [visits|] [?|] //= accepted V p.
+exact: impossible_sound accepted V p.
 Qed.

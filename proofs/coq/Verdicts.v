@@ -5,7 +5,7 @@
 From Coq Require List.
 From Coq Require Import BinNat.
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Markers Walks.
+From toposlam Require Import Spec Markers Walks Aids.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -40,12 +40,25 @@ Inductive alternative := NoVertex | Junction of N * sighting_word & option N.
 
 Record visit_text := VisitText { turned_back : bool; alternatives : seq alternative }.
 
+(** A run of a robot with a marker that it picks up, carries and drops: what it perceived at first, and what it did,
+    each time with what it then perceived, if that is known. *)
+Inductive aid_word := WordMovable | WordMovableDirectional.
+
+Inductive deed := DeedDoor of N | DeedPickUp | DeedDrop.
+
+Record run_text := RunText {
+  aid_line : aid_word;
+  first_see : N * sighting_word;
+  deed_lines : seq (deed * option (N * sighting_word))
+}.
+
 (** What all claims of a proof are about. *)
 Record setting := Setting {
   worlds : seq world_text;
   marker_line : marker_word;
   walk_line : option walk_text;
-  visits_line : option (seq visit_text)
+  visits_line : option (seq visit_text);
+  run_line : option run_text
 }.
 
 (** The edge of a move, from its visit to the next or back. *)
@@ -56,6 +69,13 @@ Inductive step := Mark of N & N | Beyond of passage & passage.
 
 Inductive contradiction :=
   | ByStep of step | BySightings of N & N | ByEdge of N | ByPercept of N | ByDoor of N | ByNoMarker.
+
+(** A proof that no robot has made some visits goes through all choices, depth first. A line chooses an alternative of
+    the next visit, by its number, with a door if that is not known; or two darts of the walk of what is chosen are one;
+    or this walk is impossible, or its last percept is not that of the vertex to which the robot has turned back, and
+    the next alternative follows. *)
+Inductive choice_line :=
+  | Choose of N & option N | Unite of step | Close of contradiction | CloseBack.
 
 (** The claims, each with what its proof needs. Darts are given by their numbers. Without a list of darts, a walk
     diverges from any, and visits misfit any. What is chosen for a visit is an alternative, and a door. *)
@@ -69,7 +89,8 @@ Inductive claim :=
   | Isomorphic of seq (N * N)
   | NotIsomorphic of seq (N * N * seq N)
   | Fits of N & seq (N * option N)
-  | Misfits of option (seq N).
+  | Misfits of option (seq N)
+  | Impossible of seq choice_line.
 
 (** * What it says *)
 
@@ -127,6 +148,43 @@ Fixpoint makes (M : marker) (W : start) (pose : W) (visits : seq visit_text) : P
       [/\ List.In a (alternatives v), visits_by M (turned_back v) (nilp others) a pose next & makes M next others]
   else True.
 
+Definition aid_of (word : aid_word) : aid :=
+  match word with WordMovable => markers_alike 1 | WordMovableDirectional => movable_directional end.
+
+(** What is seen of it: the one marker that lies here, or the door along which it points. *)
+Definition seen_of_aid (word : aid_word) : sightings (aid_of word) -> sighting :=
+  match word with
+  | WordMovable => fun lying => if lying == 0 then Nothing else Lying
+  | WordMovableDirectional => fun along => if along is Some i then Pointing i else Nothing
+  end.
+
+Definition action_of (word : aid_word) (d : deed) : action_with (aid_action (aid_of word)) :=
+  match word, d with
+  | _, DeedDoor i => Take (N.to_nat i)
+  | WordMovable, DeedPickUp => Use (PickUp : aid_action (aid_of WordMovable))
+  | WordMovable, DeedDrop => Use (Drop : aid_action (aid_of WordMovable))
+  | WordMovableDirectional, DeedPickUp => Use (PickUp : aid_action (aid_of WordMovableDirectional))
+  | WordMovableDirectional, DeedDrop => Use (Drop : aid_action (aid_of WordMovableDirectional))
+  end.
+
+(** In this state of the robot and its aid it perceives this. *)
+Definition senses (word : aid_word) (W : start) (s : state (with_aid (aid_of word) W))
+    (seen : N * sighting_word) : Prop :=
+  let: (degree, shown) := sense s in (degree, seen_of_aid shown) = percept_of seen.
+
+(** From this state the robot can do what it did, and then perceives what is known. *)
+Fixpoint does (word : aid_word) (W : start) (s : state (with_aid (aid_of word) W))
+    (deeds : seq (deed * option (N * sighting_word))) : Prop :=
+  if deeds is (d, seen) :: others then
+    let next := next_state s (action_of word d) in
+    [/\ possible s (action_of word d), (if seen is Some seen then senses next seen else True) & does next others]
+  else True.
+
+(** From this pose, with the marker by the facing dart. *)
+Definition runs (r : run_text) (W : start) (pose : W) : Prop :=
+  let s : state (with_aid (aid_of (aid_line r)) W) := (pose, first_placed (aid_of (aid_line r)) (facing W)) in
+  senses s (first_see r) /\ does s (deed_lines r).
+
 (** Each dart of a vertex with the next one clockwise: the last with the first. *)
 Definition clockwise_pairs (line : seq N) : seq (N * N) := zip line (rot 1 line).
 
@@ -159,6 +217,14 @@ Definition claim_true (s : setting) (c : claim) : Prop :=
   | Unexplained _ _, [::], Some w => forall (V : start) (p : V), ~ gives M p w
   | Conforms from, [:: t], Some w =>
       in_world t (fun W number => at_dart number from (fun pose : W => gives M pose w))
+  | Conforms from, [:: t], None =>
+      if run_line s is Some r then in_world t (fun W number => at_dart number from (fun pose : W => runs r pose))
+      else False
+  | Diverges from, [:: t], None =>
+      if run_line s is Some r then
+        in_world t (fun W number => forall pose : W,
+          (if from is Some poses then number pose \in poses else true) -> ~ runs r pose)
+      else False
   | Diverges from, [:: t], Some w =>
       in_world t (fun W number => forall pose : W,
         (if from is Some poses then number pose \in poses else true) -> ~ gives M pose w)
@@ -185,5 +251,7 @@ Definition claim_true (s : setting) (c : claim) : Prop :=
         in_world t (fun W number => forall pose : W,
           (if from is Some poses then number pose \in poses else true) -> ~ makes M pose visits)
       else False
+  | Impossible _, [::], _ =>
+      if visits_line s is Some visits then forall (V : start) (p : V), ~ makes M p visits else False
   | _, _, _ => False
   end.

@@ -18,14 +18,15 @@ import sys
 CLAIMS = {
     "determined": "world, walk",
     "unexplained": "walk",
-    "conforms": "world, walk",
-    "diverges": "world, walk",
+    "conforms": "world, walk or world, run",
+    "diverges": "world, walk or world, run",
     "indistinguishable": "world, world",
     "distinguishable": "world, world",
     "isomorphic": "world, world",
     "not-isomorphic": "world, world",
     "fits": "world, visits",
     "misfits": "world, visits",
+    "impossible": "visits",
 }
 
 # What each kind of marker can show.
@@ -49,6 +50,8 @@ FIELDS = {
     "N": f"[+-]{NUMBER}",
     "REASON": f"(sightings {NUMBER}|edge|percept|door) {NUMBER}|unmarked",
     "WAY": "through|back",
+    "AID": "movable|movable-directional",
+    "ACTION": "pick-up|drop",
     "DOOR": f"{NUMBER}|any",
 }
 
@@ -258,6 +261,34 @@ class Trail:
         """The dart along which the marker was seen, if it was."""
         return [self.known((visit, door)) for door in self.sightings[visit][1:]]
 
+    def copy(self):
+        copy = Trail(self.lines, self.kind, [], list(self.doors))
+        copy.degrees, copy.sightings = list(self.degrees), list(self.sightings)
+        copy.name, copy.turn = list(self.name), list(self.turn)
+        copy.visits = [list(visits) for visits in self.visits]
+        return copy
+
+    def add(self, door, percept):
+        """One more move of the walk."""
+        degree, *sighting = percept
+        visit = len(self.name)
+        self.doors.append(door)
+        self.degrees.append(degree)
+        self.sightings.append(sighting)
+        self.name.append(visit)
+        self.turn.append(0)
+        self.visits.append([visit])
+
+    def seen_from(self, door, percept):
+        """Whether the last visit of the walk has this percept for a robot that comes in by this door."""
+        degree, *sighting = percept
+        if degree != self.degrees[-1]:
+            return False
+        seen = self.sightings[-1]
+        if "pointing" in seen and "pointing" in sighting and not self.kind.endswith("-edge"):
+            return (door + sighting[1] - seen[1]) % degree == 0
+        return self.kind.endswith("-edge") or sighting == seen
+
 
 class Proof:
     """One proof: made by reading its parts, then checked claim by claim."""
@@ -268,11 +299,15 @@ class Proof:
         while lines.next_is("world") and len(self.worlds) < 2:
             self.worlds.append(World(lines))
         parts = ["world"] * len(self.worlds)
-        (self.marker,) = lines.take("marker MARKER")
-        for part, read in ("walk", self.read_walk), ("visits", self.read_visits):
-            if lines.next_is(part):
-                read()
-                parts.append(part)
+        if lines.next_is("aid"):
+            self.read_run()
+            parts.append("run")
+        else:
+            (self.marker,) = lines.take("marker MARKER")
+            for part, read in ("walk", self.read_walk), ("visits", self.read_visits):
+                if lines.next_is(part):
+                    read()
+                    parts.append(part)
         self.parts = ", ".join(parts)
 
     def read_walk(self):
@@ -281,6 +316,17 @@ class Proof:
         while self.lines.next_is("door"):
             self.doors += self.lines.take("door I")
             self.percepts.append(tuple(self.lines.take("see DEGREE SIGHTING")))
+
+    def read_run(self):
+        """A run is a list of what was done, at first nothing, each with what was then perceived, or None."""
+        (self.aid,) = self.lines.take("aid AID")
+        self.lines.take("run")
+        self.run = [(None, tuple(self.lines.take("see DEGREE SIGHTING")))]
+        while self.lines.next_is("door") or self.lines.next_is("do"):
+            form = "door I" if self.lines.next_is("door") else "do ACTION"
+            (done,) = self.lines.take(form)
+            seen = tuple(self.lines.take("see DEGREE SIGHTING")) if self.lines.next_is("see") else None
+            self.run.append((done, seen))
 
     def read_visits(self):
         """A visit is its way and its alternatives: pairs of a percept and a door, or None for no vertex."""
@@ -304,7 +350,7 @@ class Proof:
         more = True
         while more:
             (kind,) = self.lines.take("claim CLAIM")
-            self.lines.need(self.parts == CLAIMS[kind], f"`{kind}` needs: {CLAIMS[kind]}")
+            self.lines.need(self.parts in CLAIMS[kind].split(" or "), f"`{kind}` needs: {CLAIMS[kind]}")
             getattr(self, kind.replace("-", "_"))()
             self.lines.take("end")
             yield kind
@@ -332,8 +378,29 @@ class Proof:
         one, other = (world.percept(self.marker, pose) for world, pose in zip(self.worlds, pair))
         return one == other
 
+    def ran(self, pose):
+        """Whether all that was done in the run is possible from this pose, and perceived so."""
+        (world,) = self.worlds
+        lies = world.facing  # None if the robot carries the marker
+        for done, seen in self.run:
+            here = lies is not None and world.clockwise[lies] is world.clockwise[pose]
+            if done == "pick-up" and here:
+                lies = None
+            elif done == "drop" and lies is None:
+                lies = pose
+            elif isinstance(done, int) and done < world.degree(pose):
+                pose = world.behind(pose, done)
+            elif done is not None:
+                return False
+            kind = "none" if lies is None else "undirected" if self.aid == "movable" else "directional"
+            if seen not in (None, world.percept(kind, pose, lies)):
+                return False
+        return True
+
     def given(self, pose):
-        """Whether the walk gives its percepts from this pose."""
+        """Whether the walk gives its percepts from this pose, or the run."""
+        if self.parts.endswith("run"):
+            return self.ran(pose)
         (world,) = self.worlds
         for percept, door in zip(self.percepts, [*self.doors, 0]):  # the last door is of no account
             if pose is None or world.percept(self.marker, pose) != percept:
@@ -446,6 +513,53 @@ class Proof:
             onward = [self.onward(visit, alternative, pose) for alternative in alternatives for pose in poses]
             poses = {pose for behind in onward for pose in behind.values()}
         self.lines.need(not poses, "a robot makes these visits")
+
+    def choices(self, visit):
+        """What can be chosen of a visit: the words behind `choose`, with the percept and the door, or None."""
+        _, alternatives = self.visits[visit]
+        for number, alternative in enumerate(alternatives):
+            if alternative is None or alternative[1] != "any":
+                yield [number], alternative
+            elif visit == len(self.visits) - 1:
+                yield [number], (alternative[0], 0)  # this door is of no account
+            else:
+                for door in range(alternative[0][0]):
+                    yield [number, door], (alternative[0], door)
+
+    def impossible(self):
+        # For each visit that is chosen, and the next: the choices left, with the trail before it, the door by which
+        # the robot left the trail, and whether it has turned round since.
+        chosen = [(self.choices(0), None, None, False)]
+        while chosen:
+            choices, trail, left_by, turned = chosen[-1]
+            words, alternative = next(choices, (None, None))
+            if words is None:
+                chosen.pop()
+                continue
+            self.lines.need(self.lines.take("choose K...") == words, f"not `choose {words}`")
+            trail = trail and trail.copy()
+            if alternative is None:
+                turned ^= self.visits[len(chosen) - 1][0] == "back"
+            else:
+                percept, door = alternative
+                if trail is None:
+                    trail = Trail(self.lines, self.marker, [percept], [])
+                elif not turned:
+                    trail.add(left_by, percept)
+                elif trail.seen_from(left_by, percept):
+                    door = (left_by + door) % percept[0]
+                else:
+                    self.lines.take("contradiction back")
+                    continue
+                left_by, turned = door, False
+            if trail is not None:
+                while self.lines.next_is("mark") or self.lines.next_is("beyond"):
+                    trail.step()
+                if self.lines.next_is("contradiction"):
+                    self.lines.need(trail.contradiction(), "no contradiction")
+                    continue
+            self.lines.need(len(chosen) < len(self.visits), "no contradiction at the last visit")
+            chosen.append((self.choices(len(chosen)), trail, left_by, turned))
 
 
 def proved(file):

@@ -10,6 +10,8 @@ pub struct ClosedTrail {
     /// The dart along which the marker points, or a dart of the vertex at which an undirected one lies, if it was
     /// seen.
     pub marker: Option<Dart>,
+    /// The dart by which the robot had come in at the start.
+    pub start: Dart,
     /// The dart by which the robot has come in.
     pub pose: Dart,
 }
@@ -19,12 +21,12 @@ impl FoldedTrail {
     /// trail [is complete](Self::is_complete) it is the only world that does. `None` if nothing was
     /// perceived.
     pub fn closed(&self) -> Option<ClosedTrail> {
-        (self.vertex_count() > 0).then(|| self.closed_by(&[]).0)
+        (self.vertex_count() > 0).then(|| self.closed_by(&[]))
     }
 
     /// The folded trail as a world in which these pairs of open darts are edges, with a dead end behind each
-    /// other open dart; and the robot's pose in it at the start. At least one thing was perceived.
-    pub(super) fn closed_by(&self, edges: &[(Dart, Dart)]) -> (ClosedTrail, Dart) {
+    /// other open dart. At least one thing was perceived.
+    pub(super) fn closed_by(&self, edges: &[(Dart, Dart)]) -> ClosedTrail {
         let mut joined = vec![None; self.dart_count()];
         for &(one, other) in edges {
             (joined[one.at()], joined[other.at()]) = (Some(other), Some(one));
@@ -59,6 +61,6 @@ impl FoldedTrail {
         // The arrow comes from what is behind an open dart.
         let [_, head] = self.arrow.ends(&self.classes);
         let marker = marker.or_else(|| Some(graph.opposite(numbered(head?))));
-        (ClosedTrail { graph, marker, pose }, start)
+        ClosedTrail { graph, marker, start, pose }
     }
 }

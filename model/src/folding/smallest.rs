@@ -415,7 +415,7 @@ impl Search<'_> {
         if !better && self.class != Class::Planar {
             return true;
         }
-        let (ClosedTrail { mut graph, marker, .. }, start) = self.trail.closed_by(joined);
+        let ClosedTrail { mut graph, marker, start, .. } = self.trail.closed_by(joined);
         if self.class == Class::Planar && graph.genus() > 0 {
             return false;
         }

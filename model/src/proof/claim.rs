@@ -2,7 +2,9 @@
 
 use thiserror::Error;
 
-use super::{FoldedWalk, PerceivedWalk, UnionStep, WalkContradiction, WalkEnd, fold_walk};
+use super::{
+    ChoiceLine, FoldedWalk, PerceivedWalk, UnionStep, WalkContradiction, WalkEnd, fold_walk,
+};
 use crate::{
     aid::AidAction,
     ambiguity::{self, Comparison},
@@ -30,6 +32,8 @@ pub enum Claim {
     Fits { from: Dart, choice: Vec<ChosenAlternative> },
     /// The visits fit the world from none of these poses, whatever is chosen; `None`: from no pose.
     Misfits { from: Option<Vec<Dart>> },
+    /// The visits fit no world, whatever is chosen.
+    Impossible { lines: Vec<ChoiceLine> },
     /// From the first pair of poses no walk distinguishes the two worlds: these pairs are a bisimulation.
     Indistinguishable { pairs: Vec<[Dart; 2]> },
     /// Each of these walks distinguishes the two worlds.
@@ -71,10 +75,22 @@ pub enum NotProved {
     OtherMarker,
     #[error("the walk does not determine its world: {} never followed", counted_doors(*.0))]
     Open(usize),
-    #[error("proofs are about fixed markers, and not about `{0}`")]
+    #[error("proofs are about fixed markers and about one that is carried, and not about `{0}`")]
     Aid(&'static str),
-    #[error("several percepts are possible at some visits, and no world is known")]
+    #[error("proofs about `{0}` need a known world")]
+    AidWithoutWorld(&'static str),
+    #[error(
+        "several percepts are possible at some visits, and for this marker no world is searched"
+    )]
     Possible,
+    #[error(
+        "several percepts are possible at some visits, and the search for a world that explains them ended early"
+    )]
+    SearchEnded,
+    #[error("the proof that no percepts of these visits are possible has too many lines")]
+    TooManyChoices,
+    #[error("some world explains these visits")]
+    PossibleInSomeWorld,
     #[error("the robot drove where its scanner did not look")]
     UnseenWay,
     #[error("the map is not complete")]
@@ -100,6 +116,7 @@ impl Claim {
             Self::Diverges { .. } => "diverges",
             Self::Fits { .. } => "fits",
             Self::Misfits { .. } => "misfits",
+            Self::Impossible { .. } => "impossible",
             Self::Indistinguishable { .. } => "indistinguishable",
             Self::Distinguishable { .. } => "distinguishable",
             Self::Isomorphic { .. } => "isomorphic",

@@ -1,7 +1,7 @@
 //! What a walk proves, step by step. Beyond Section 2.3; the same folding as that of
 //! [folded trails](crate::folding::FoldedTrail), with a reason for each union.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, iter};
 
 use super::PerceivedWalk;
 use crate::{
@@ -65,24 +65,17 @@ pub enum WalkEnd {
 
 /// Folds a walk, visit by visit, up to the first that contradicts those before it.
 pub fn fold_walk(walk: &PerceivedWalk, marker: MarkerKind) -> FoldedWalk {
-    let mut folding = Folding {
-        walk,
-        marker,
-        labels: Vec::with_capacity(walk.percepts().len()),
-        classes: Vec::with_capacity(walk.percepts().len()),
-        marked: None,
-        steps: Vec::new(),
-        pending: Vec::new(),
-    };
-    for visit in 0..walk.percepts().len() {
-        if let Err(contradiction) = folding.arrive(visit) {
+    let mut folding = Folding::new(marker);
+    let doors = iter::once(None).chain(walk.doors().iter().copied().map(Some));
+    for (visit, (door, &percept)) in doors.zip(walk.percepts()).enumerate() {
+        if let Err(contradiction) = folding.arrive(door, percept) {
             let end = WalkEnd::Contradiction { visit, contradiction };
             return FoldedWalk { steps: folding.steps, end };
         }
     }
     let visit = walk.percepts().len().saturating_sub(1);
     let end = match folding.open_count() {
-        0 if marker == Directional && folding.marked.is_none() => {
+        0 if folding.lacks_marker() => {
             WalkEnd::Contradiction { visit, contradiction: WalkContradiction::Unmarked }
         }
         0 => WalkEnd::Complete,
@@ -91,8 +84,11 @@ pub fn fold_walk(walk: &PerceivedWalk, marker: MarkerKind) -> FoldedWalk {
     FoldedWalk { steps: folding.steps, end }
 }
 
-struct Folding<'w> {
-    walk: &'w PerceivedWalk,
+/// The folding of a walk, visit by visit.
+#[derive(Clone)]
+pub(super) struct Folding {
+    percepts: Vec<Percept>,
+    doors: Vec<Door>,
     marker: MarkerKind,
     /// For each visit, that of its class, and the index there of the dart by which the robot came in.
     labels: Vec<(usize, u32)>,
@@ -100,12 +96,13 @@ struct Folding<'w> {
     classes: Vec<Option<VertexClass>>,
     /// The first visit at which a directional marker was seen.
     marked: Option<usize>,
-    steps: Vec<UnionStep>,
+    pub(super) steps: Vec<UnionStep>,
     /// Pairs of passages that leave by one dart.
     pending: Vec<[Passage; 2]>,
 }
 
 /// Visits that are known to be at one vertex.
+#[derive(Clone)]
 struct VertexClass {
     members: Vec<usize>,
     /// For each dart of the vertex, a passage that leaves by it.
@@ -134,16 +131,50 @@ impl VertexClass {
     }
 }
 
-impl Folding<'_> {
-    /// The robot comes to its next visit.
-    fn arrive(&mut self, visit: usize) -> Result<(), WalkContradiction> {
-        let passage = visit.checked_sub(1);
-        if let Some(number) = passage
-            && self.walk.doors()[number].0 >= self.walk.percepts()[number].degree
-        {
-            return Err(WalkContradiction::Door(number));
+impl Folding {
+    pub(super) fn new(marker: MarkerKind) -> Self {
+        Self {
+            percepts: Vec::new(),
+            doors: Vec::new(),
+            marker,
+            labels: Vec::new(),
+            classes: Vec::new(),
+            marked: None,
+            steps: Vec::new(),
+            pending: Vec::new(),
         }
-        let percept = self.walk.percepts()[visit];
+    }
+
+    /// The percept of the last visit.
+    pub(super) fn last_percept(&self) -> Option<Percept> {
+        self.percepts.last().copied()
+    }
+
+    /// Whether a directional marker was not seen.
+    pub(super) fn lacks_marker(&self) -> bool {
+        self.marker == Directional && self.marked.is_none()
+    }
+
+    pub(super) fn marks_edges(&self) -> bool {
+        matches!(self.marker, UndirectedEdge | DirectedEdge)
+    }
+
+    /// The robot comes to its next visit, by a door if it is not the first one. After a contradiction the folding is of no
+    /// more use.
+    pub(super) fn arrive(
+        &mut self,
+        door: Option<Door>,
+        percept: Percept,
+    ) -> Result<(), WalkContradiction> {
+        let visit = self.percepts.len();
+        let passage = door.zip(visit.checked_sub(1));
+        if let Some((door, number)) = passage {
+            if door.0 >= self.percepts[number].degree {
+                return Err(WalkContradiction::Door(number));
+            }
+            self.doors.push(door);
+        }
+        self.percepts.push(percept);
         if !can_be_perceived(percept, self.marker) {
             return Err(WalkContradiction::Percept(visit));
         }
@@ -153,14 +184,14 @@ impl Folding<'_> {
             passages: vec![None; percept.degree as usize],
             views: Views::from([(0, (visit, percept))]),
         }));
-        if let Some(number) = passage {
+        if let Some((_, number)) = passage {
             self.pass(Passage { number, is_onward: true });
             self.pass(Passage { number, is_onward: false });
             self.follow()?;
         }
         if let Sighting::Pointing(door) = percept.sighting {
             let first = *self.marked.get_or_insert(visit);
-            if let Sighting::Pointing(first_door) = self.walk.percepts()[first].sighting {
+            if let Sighting::Pointing(first_door) = self.percepts[first].sighting {
                 self.unite(UnionStep::Mark([first, visit]), (first, first_door), (visit, door))?;
                 self.follow()?;
             }
@@ -189,7 +220,7 @@ impl Folding<'_> {
 
     /// The dart by which a passage leaves: the door of a visit.
     fn near(&self, Passage { number, is_onward }: Passage) -> (usize, Door) {
-        if is_onward { (number, self.walk.doors()[number]) } else { (number + 1, Door::BACK) }
+        if is_onward { (number, self.doors[number]) } else { (number + 1, Door::BACK) }
     }
 
     /// The dart to which it leads.
@@ -200,7 +231,7 @@ impl Folding<'_> {
     /// The class of a visit, and the index of the dart behind a door there.
     fn locate(&self, (visit, door): (usize, Door)) -> (usize, u32) {
         let (root, entry) = self.labels[visit];
-        (root, turned(entry, door.0, self.walk.percepts()[visit].degree))
+        (root, turned(entry, door.0, self.percepts[visit].degree))
     }
 
     /// Two darts, each a door of a visit, are one.
@@ -264,14 +295,14 @@ impl Folding<'_> {
         one_end.map_or(Ok(()), |passage| Err(WalkContradiction::Edge(passage.number)))
     }
 
-    fn open_count(&self) -> usize {
+    pub(super) fn open_count(&self) -> usize {
         let darts = self.classes.iter().flatten().flat_map(|class| &class.passages);
         darts.filter(|passage| passage.is_none()).count()
     }
 }
 
 /// An index at a vertex, turned clockwise; `by` is at most the degree.
-fn turned(index: u32, by: u32, degree: u32) -> u32 {
+pub(super) fn turned(index: u32, by: u32, degree: u32) -> u32 {
     ((u64::from(index) + u64::from(by)) % u64::from(degree)) as u32
 }
 

@@ -2,12 +2,14 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    aid::AidAction,
+    aid::{Action, AidAction, markers::MOVABLE},
     any_graph::{Class, any_graph},
     folding::FoldedTrail,
     mapping::{MappingEvent, MappingMethod, MovableEvent, SafeguardEvent},
     marker::{MARKERS, NoMarker, Undirected},
     percept::{Door, MarkerSet, Percept, Sighting},
+    trace::{Trace, TraceEventKind},
+    visits::{VisitAlternative, VisitSet, VisitWay},
     world::GraphWorld,
 };
 
@@ -38,6 +40,74 @@ fn the_proof_of_two_parallel_edges_is_that_of_the_page() {
     let proof = Proof::of_map(&ring, Dart(0), walk).unwrap().to_string();
     let page = include_str!("../../../docs/proofs-of-verdicts.md");
     assert!(page.contains(&format!("```text\n{proof}```")), "{proof}");
+}
+
+/// The visits of that page, and a bound that they reach.
+#[test]
+fn the_proof_of_impossible_visits_is_that_of_the_page() {
+    let seen = |degree, door, sighting| {
+        let percept = Percept { degree, sighting };
+        Some(VisitAlternative { percept, door })
+    };
+    let (nothing, pointing) = (Sighting::Nothing, Sighting::Pointing(Door(0)));
+    let corner = |door, sighting| seen(2, Some(Door(door)), sighting);
+    let end = seen(1, Some(Door(0)), nothing);
+    let mut visits = vec![
+        VisitSet::new([corner(1, nothing), corner(0, pointing)], VisitWay::Through),
+        VisitSet::new([None, end], VisitWay::Back),
+        VisitSet::new([seen(3, None, nothing)], VisitWay::Through),
+    ];
+    let proof = Proof::of_impossible_visits(&visits, 2, Directional).unwrap().to_string();
+    let page = include_str!("../../../docs/proofs-of-verdicts.md");
+    assert!(page.contains(&format!("```text\n{proof}```")), "{proof}");
+    let possible = Proof::of_impossible_visits(&visits, 1, Directional).unwrap_err();
+    assert_eq!(possible, NotProved::PossibleInSomeWorld);
+    // Between two vertices with the marker, of which one has another degree, are many of which nothing is known.
+    let through = |alternative| VisitSet::new([alternative], VisitWay::Through);
+    let any = [1, 2, 3].map(|degree| seen(degree, None, nothing));
+    visits = vec![through(corner(1, pointing))];
+    visits.extend(vec![VisitSet::new(any, VisitWay::Through); 12]);
+    visits.push(through(seen(1, Some(Door(0)), pointing)));
+    let long = Proof::of_impossible_visits(&visits, 13, Directional).unwrap_err();
+    assert_eq!(long, NotProved::TooManyChoices);
+    // Visits that do not matter are no part of a proof.
+    visits.push(VisitSet::new([], VisitWay::Through));
+    let none = Proof::of_impossible_visits(&visits, 14, Directional).unwrap().to_string();
+    assert!(none.ends_with("visits\nvisit through\nclaim impossible\nend\n"), "{none}");
+}
+
+/// The run of that page. Runs with other aids have no proof.
+#[test]
+fn the_run_with_a_marker_that_is_carried_is_that_of_the_page() {
+    let ring = EmbeddedGraph::cycle(2);
+    let mut world = GraphWorld::with_aid(&ring, MOVABLE, Dart(0));
+    let mut events = vec![TraceEventKind::Percept(world.sensed())];
+    let next = Action::Take(Door(1));
+    let [pick_up, drop] = [AidAction::PickUp, AidAction::Drop].map(Action::Do);
+    for (action, is_seen) in [(pick_up, true), (next, true), (drop, false), (next, true)] {
+        world.act(action).unwrap();
+        events.push(match action {
+            Action::Take(door) => TraceEventKind::Door(door),
+            Action::Do(action) => TraceEventKind::Action(action),
+        });
+        events.extend(is_seen.then(|| TraceEventKind::Percept(world.sensed())));
+    }
+    let trace = Trace::new(events).unwrap();
+    let run = PerceivedRun::new(MOVABLE.into(), &trace).unwrap();
+    let (worlds, claims) = (vec![(&ring, Dart(0))], vec![Claim::Conforms { from: Dart(0) }]);
+    let proof = Proof { worlds, marker: NoMarker, seen: Some(Seen::Run(run)), claims }.to_string();
+    let page = include_str!("../../../docs/proofs-of-verdicts.md");
+    assert!(page.contains(&format!("```text\n{proof}```")), "{proof}");
+    let fixed = PerceivedRun::new(Undirected.into(), &trace);
+    assert_eq!(fixed, Err(NotProved::Aid("undirected")));
+    let dropped = Trace::new([
+        TraceEventKind::Percept(world.sensed()),
+        TraceEventKind::Action(AidAction::DropMarker(1)),
+    ]);
+    assert_eq!(
+        PerceivedRun::new(MOVABLE.into(), &dropped.unwrap()),
+        Err(NotProved::Action(AidAction::DropMarker(1)))
+    );
 }
 
 #[test]

@@ -2,10 +2,15 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::{Claim, Passage, PerceivedWalk, Proof, Seen, UnionStep, WalkContradiction, WalkPair};
+use super::{
+    ChoiceLine, Claim, Passage, PerceivedRun, PerceivedWalk, Proof, Seen, UnionStep,
+    WalkContradiction, WalkPair,
+};
 use crate::{
+    aid::AidAction,
     embedded_graph::{Dart, EmbeddedGraph},
-    percept::{Door, MarkerSet, Sighting},
+    percept::{Door, MarkerSet, Percept, Sighting},
+    trace::TraceEventKind,
     visits::{ChosenAlternative, VisitAlternative, VisitSet, VisitWay},
 };
 
@@ -37,11 +42,15 @@ impl Display for Proof<'_> {
         for &(graph, facing) in &self.worlds {
             write_world(out, graph, facing)?;
         }
-        writeln!(out, "marker {}", self.marker.name())?;
+        if let Some(Seen::Run(run)) = &self.seen {
+            write!(out, "{run}")?;
+        } else {
+            writeln!(out, "marker {}", self.marker.name())?;
+        }
         match &self.seen {
             Some(Seen::Walk(walk)) => write!(out, "{walk}")?,
             Some(Seen::Visits(visits)) => write_visits(out, visits)?,
-            None => {}
+            Some(Seen::Run(_)) | None => {}
         }
         self.claims.iter().try_for_each(|claim| write!(out, "{claim}"))
     }
@@ -73,11 +82,30 @@ impl Display for PerceivedWalk {
     fn fmt(&self, out: &mut Formatter) -> fmt::Result {
         writeln!(out, "walk")?;
         let mut doors = self.doors().iter();
-        for percept in self.percepts() {
-            let sighting = word(percept.sighting).unwrap_or_default();
-            writeln!(out, "see {} {sighting}", percept.degree)?;
+        for &percept in self.percepts() {
+            write_percept(out, percept)?;
             if let Some(door) = doors.next() {
                 writeln!(out, "door {}", door.0)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn write_percept(out: &mut Formatter, Percept { degree, sighting }: Percept) -> fmt::Result {
+    writeln!(out, "see {degree} {}", word(sighting).unwrap_or_default())
+}
+
+impl Display for PerceivedRun {
+    fn fmt(&self, out: &mut Formatter) -> fmt::Result {
+        writeln!(out, "aid {}\nrun", self.aid().name())?;
+        for &event in self.events() {
+            match event {
+                TraceEventKind::Percept(percept) => write_percept(out, percept)?,
+                TraceEventKind::Door(door) => writeln!(out, "door {}", door.0)?,
+                TraceEventKind::Action(AidAction::PickUp) => writeln!(out, "do pick-up")?,
+                TraceEventKind::Action(AidAction::Drop) => writeln!(out, "do drop")?,
+                TraceEventKind::Action(_) => {}
             }
         }
         Ok(())
@@ -120,10 +148,10 @@ impl Display for Claim {
             Self::Conforms { from } => write_darts(out, "from", [*from])?,
             Self::Fits { from, choice } => {
                 write_darts(out, "from", [*from])?;
-                for ChosenAlternative { number, door } in choice {
-                    let door = door.map_or_else(String::new, |door| format!(" {}", door.0));
-                    writeln!(out, "choose {number}{door}")?;
-                }
+                choice.iter().try_for_each(|chosen| writeln!(out, "{}", chosen_text(chosen)))?;
+            }
+            Self::Impossible { lines } => {
+                lines.iter().try_for_each(|line| writeln!(out, "{line}"))?;
             }
             Self::Diverges { from: Some(from) } | Self::Misfits { from: Some(from) } => {
                 write_darts(out, "from", from.iter().copied())?;
@@ -154,6 +182,22 @@ impl Display for Claim {
 
 fn write_steps(out: &mut Formatter, steps: &[UnionStep]) -> fmt::Result {
     steps.iter().try_for_each(|step| writeln!(out, "{step}"))
+}
+
+fn chosen_text(ChosenAlternative { number, door }: &ChosenAlternative) -> String {
+    let door = door.map_or_else(String::new, |door| format!(" {}", door.0));
+    format!("choose {number}{door}")
+}
+
+impl Display for ChoiceLine {
+    fn fmt(&self, out: &mut Formatter) -> fmt::Result {
+        match self {
+            Self::Choose(chosen) => out.write_str(&chosen_text(chosen)),
+            Self::Step(step) => write!(out, "{step}"),
+            Self::Contradiction(contradiction) => write!(out, "contradiction {contradiction}"),
+            Self::BackElsewhere => out.write_str("contradiction back"),
+        }
+    }
 }
 
 impl Display for UnionStep {

@@ -8,7 +8,11 @@
 use std::collections::BTreeSet;
 
 use super::{VisitAlternative, VisitSet, VisitWay};
-use crate::{enumerate::Watch, folding::FoldedTrail, percept::Door};
+use crate::{
+    enumerate::Watch,
+    folding::{ClosedTrail, FoldedTrail},
+    percept::Door,
+};
 
 /// Whether some choice of visits is explained: by a known world or by any, and by the doors of an algorithm if one drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,16 +51,18 @@ struct Branch {
     untried: Vec<(Option<VisitAlternative>, Next)>,
 }
 
-/// Searches for a choice of the visits that some world explains. The robot has a directional marker, or none. `bound` is
-/// the largest number of darts in the trails that are tried, all together: it limits time and memory.
+/// Searches for a choice of the visits that some world explains, and returns a world that does; `None` if a choice without
+/// vertices is explained by all worlds. The robot has a directional marker, or none. If the marker was not seen, it lies
+/// behind the last dart of the world. `bound` is the largest number of darts in the trails that are tried, all together: it
+/// limits time and memory.
 pub fn explain(
     visits: &[VisitSet],
     is_marked: bool,
     bound: usize,
     watch: &dyn Watch,
-) -> Explanation {
+) -> (Explanation, Option<ClosedTrail>) {
     let begin = VisitWalk::begin();
-    let Some(first) = visits.first() else { return Explanation::Explained(Vec::new()) };
+    let Some(first) = visits.first() else { return (Explanation::Explained(Vec::new()), None) };
     let mut branches = vec![Branch { untried: begin.ways(first, visits.len() == 1), walk: begin }];
     let mut choice = Vec::new();
     let mut tried = BTreeSet::new();
@@ -69,7 +75,7 @@ pub fn explain(
         };
         darts = darts.saturating_add(branch.walk.trail.dart_count() + 1);
         if darts > bound || watch.stop() {
-            return Explanation::NotKnown;
+            return (Explanation::NotKnown, None);
         }
         let walk = branch.walk.after(alternative, next);
         let Some(walk) = walk.filter(|walk| !is_marked || walk.may_hold_marker()) else { continue };
@@ -79,11 +85,13 @@ pub fn explain(
             continue;
         }
         choice.push(alternative);
-        let Some(set) = visits.get(visit) else { return Explanation::Explained(choice) };
+        let Some(set) = visits.get(visit) else {
+            return (Explanation::Explained(choice), walk.trail.closed());
+        };
         let untried = walk.ways(set, visit + 1 == visits.len());
         branches.push(Branch { walk, untried });
     }
-    Explanation::Impossible { visit: farthest }
+    (Explanation::Impossible { visit: farthest }, None)
 }
 
 impl VisitWalk {

@@ -59,6 +59,16 @@ impl VisitSet {
         Self::new([None], VisitWay::Back)
     }
 
+    /// Without the alternatives whose door does not exist: no robot has taken it.
+    #[must_use]
+    pub fn with_existing_doors(&self) -> Self {
+        let exists = |alternative: &Option<VisitAlternative>| {
+            let Some(VisitAlternative { percept, door }) = alternative else { return true };
+            door.is_none_or(|door| door.0 < percept.degree)
+        };
+        Self::new(self.alternatives.iter().copied().filter(exists), self.way)
+    }
+
     pub fn alternatives(&self) -> &[Option<VisitAlternative>] {
         &self.alternatives
     }

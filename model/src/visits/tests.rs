@@ -10,9 +10,11 @@ use crate::{
     aid::markers::MOVABLE,
     any_graph::{Class, StopAt, any_graph, by_neighbours, starts},
     embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::Watch,
     mapping::MappingAlgorithm,
     marker::{Directional, Marker, NoMarker},
     percept::Sighting,
+    proof::Proof,
     trace::{
         MatchEnd, Trace, TraceClaim, TraceEventKind, anywhere, match_algorithm, poses,
         tests::{explored_by, lollipop},
@@ -24,6 +26,15 @@ use crate::{
 fn unmarked(degree: u32, door: u32) -> Option<VisitAlternative> {
     let percept = Percept { degree, sighting: Sighting::Nothing };
     Some(VisitAlternative { percept, door: Some(Door(door)) })
+}
+
+fn explanation(
+    visits: &[VisitSet],
+    is_marked: bool,
+    bound: usize,
+    watch: &dyn Watch,
+) -> Explanation {
+    explain(visits, is_marked, bound, watch).0
 }
 
 /// Every choice of some visits.
@@ -124,7 +135,7 @@ fn a_visit_that_may_be_none_leaves_the_robot_on_its_edge() {
 fn turning_back_contradicts_a_vertex_that_has_another_degree_then() {
     let visit = |degree, door| VisitSet::new([unmarked(degree, door)], VisitWay::Through);
     let turned = VisitSet::turned_back;
-    let impossible = |visits: &[VisitSet]| match explain(visits, false, 1000, &()) {
+    let impossible = |visits: &[VisitSet]| match explanation(visits, false, 1000, &()) {
         Explanation::Impossible { visit } => Some(visit),
         Explanation::Explained(_) => None,
         Explanation::NotKnown => panic!("there are few choices"),
@@ -144,10 +155,13 @@ fn a_search_that_is_stopped_or_reaches_its_bound_knows_nothing() {
     let visits = vec![VisitSet::new([unmarked(3, 1)], VisitWay::Through); 20];
     // Before each visit the trail has the three darts of each earlier one.
     let needed = (0..20).map(|visit| 3 * visit + 1).sum();
-    assert!(matches!(explain(&visits, false, needed, &()), Explanation::Explained(_)));
-    assert_eq!(explain(&visits, false, needed - 1, &()), Explanation::NotKnown);
-    assert_eq!(explain(&visits, false, needed, &StopAt::new(20)), Explanation::NotKnown);
-    assert!(matches!(explain(&visits, false, needed, &StopAt::new(21)), Explanation::Explained(_)));
+    assert!(matches!(explanation(&visits, false, needed, &()), Explanation::Explained(_)));
+    assert_eq!(explanation(&visits, false, needed - 1, &()), Explanation::NotKnown);
+    assert_eq!(explanation(&visits, false, needed, &StopAt::new(20)), Explanation::NotKnown);
+    assert!(matches!(
+        explanation(&visits, false, needed, &StopAt::new(21)),
+        Explanation::Explained(_)
+    ));
 }
 
 #[test]
@@ -158,7 +172,7 @@ fn what_was_tried_in_vain_is_not_tried_again() {
     let mut visits = vec![fork(3)];
     visits.extend(vec![either; 40]);
     visits.extend([fork(3), VisitSet::turned_back(), fork(4)]);
-    assert_eq!(explain(&visits, false, 100_000, &()), Explanation::Impossible { visit: 43 });
+    assert_eq!(explanation(&visits, false, 100_000, &()), Explanation::Impossible { visit: 43 });
 }
 
 /// Every walk of some visits as an algorithm makes it: where it turned back, it was at a dead end.
@@ -206,7 +220,7 @@ fn takes(
     } else {
         let visit = |&vertex: &_| VisitSet::new([Some(vertex)], VisitWay::Through);
         let visits: Vec<_> = walk.iter().map(visit).collect();
-        matches!(explain(&visits, true, 100_000, &()), Explanation::Explained(_))
+        matches!(explanation(&visits, true, 100_000, &()), Explanation::Explained(_))
     };
     is_explained && matches!(reached, MatchEnd::Mapped | MatchEnd::EndOfTrace)
 }
@@ -404,19 +418,24 @@ proptest! {
             };
             after.len() == visits.len() && !after[visits.len() - 1].is_empty()
         }));
-        match explain(&visits, marked, 100_000, &()) {
+        let marker = if marked { Directional } else { NoMarker };
+        let (found, world) = explain(&visits, marked, 100_000, &());
+        match found {
             Explanation::Explained(choice) => {
                 prop_assert!(in_small, "{choice:?}");
+                let proved = |world| Proof::of_visits_in_world(world, marker, &visits).is_ok();
+                prop_assert!(world.as_ref().is_none_or(proved));
                 let chosen = |(visit, one): (&VisitSet, &_)| visit.alternatives().contains(one);
                 prop_assert!(visits.iter().zip(&choice).all(chosen));
                 prop_assert_eq!(visits.len(), choice.len());
                 let only: Vec<_> = visits.iter().zip(&choice)
                     .map(|(visit, &one)| VisitSet::new([one], visit.way())).collect();
-                prop_assert!(matches!(explain(&only, marked, 1000, &()), Explanation::Explained(_)));
+                prop_assert!(matches!(explanation(&only, marked, 1000, &()), Explanation::Explained(_)));
             }
             Explanation::Impossible { visit } => {
                 prop_assert!(!in_small);
-                let before = explain(&visits[..visit], marked, 100_000, &());
+                prop_assert!(Proof::of_impossible_visits(&visits, visit, marker).is_ok());
+                let before = explanation(&visits[..visit], marked, 100_000, &());
                 prop_assert!(matches!(before, Explanation::Explained(_)));
             }
             Explanation::NotKnown => prop_assert!(false, "there are few choices"),

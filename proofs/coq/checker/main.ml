@@ -128,6 +128,30 @@ let visits r =
   in
   go []
 
+(* A run of a robot with an aid: what it did, each time with what it then perceived, if that is known. *)
+let aids = [ ("movable", WordMovable); ("movable-directional", WordMovableDirectional) ]
+
+let deed r = function
+  | [ "door"; i ] -> Some (DeedDoor (number_of r i))
+  | [ "do"; "pick-up" ] -> Some DeedPickUp
+  | [ "do"; "drop" ] -> Some DeedDrop
+  | _ -> None
+
+let run r aid_line =
+  expect r "run";
+  let first_see, first_at = line r "see DEGREE SIGHTING" (see r) in
+  let rec go found =
+    match read_words (deed r) r with
+    | None -> List.rev found
+    | Some d ->
+        let at = taken r in
+        let seen = read_words (see r) r in
+        if seen <> None then ignore (taken r);
+        go (((d, seen), at) :: found)
+  in
+  let deeds = go [] in
+  ({ aid_line; first_see; deed_lines = items deeds }, Array.append [| first_at |] (places deeds))
+
 let choice r = function
   | [ "choose"; k ] -> Some (number_of r k, None)
   | [ "choose"; k; i ] -> Some (number_of r k, Some (number_of r i))
@@ -157,6 +181,14 @@ let contradiction r = function
         | _ -> (
             match step r what with Some s -> ByStep s | None -> malformed r "this is no contradiction"))
   | _ -> None
+
+let choice_line r = function
+  | [ "contradiction"; "back" ] -> Some CloseBack
+  | words -> (
+      match (choice r words, step r words) with
+      | Some (number, door), _ -> Some (Choose (number, door))
+      | None, Some s -> Some (Unite s)
+      | None, None -> Option.map (fun found -> Close found) (contradiction r words))
 
 let pair r word = function [ first; p; q ] when first = word -> Some (number_of r p, number_of r q) | _ -> None
 
@@ -193,6 +225,7 @@ let claim r = function
       let choices = lines r (choice r) in
       (Fits (from, items choices), places choices)
   | "misfits" -> (Misfits (fst (line r "from D... or from any" (poses r))), [||])
+  | "impossible" -> let found = lines r (choice_line r) in (Impossible (items found), places found)
   | "indistinguishable" -> let pairs = lines r (pair r "pair") in (Indistinguishable (items pairs), places pairs)
   | "distinguishable" -> let walks = walks r in (Distinguishable (items walks), places walks)
   | "isomorphic" -> let images = lines r (pair r "image") in (Isomorphic (items images), places images)
@@ -238,22 +271,28 @@ let why = function
   | WalksTooMany -> "a dart of the second world has two walks"
   | PosesLeftOut d -> say "dart %d of the second world is left out" (int d)
   | NoAlternative n -> say "there is no alternative %d" (int n)
-  | NotSo -> "the robot does not make this visit so"
+  | NotSo -> "the robot does not do or perceive this"
   | VisitsMade -> "a robot from one of these poses makes these visits"
+  | ChoiceMissing -> "the next alternative has to be chosen, or a contradiction has to end this choice"
   | OtherPose d -> say "the pose %d in the first world is not that of the first walk" (int d)
 
 let proved s c =
   let visits_made () = match s.visits_line with Some visits -> List.length visits | None -> 0 in
   let edges () = match s.worlds with t :: _ -> List.length t.edge_lines | [] -> 0 in
   let visits () = match s.walk_line with Some w -> List.length w.see_lines | None -> 0 in
+  let way () =
+    match s.run_line with
+    | Some r -> say "%d actions" (List.length r.deed_lines)
+    | None -> say "%d visits" (visits ()) in
   match c with
   | Determined _ -> say "determined: %d edges, %d visits" (edges ()) (visits ())
   | Unexplained (steps, _) -> say "unexplained: %d visits, %d steps" (visits ()) (List.length steps)
-  | Conforms _ -> say "conforms: %d edges, %d visits" (edges ()) (visits ())
-  | Diverges None -> say "diverges: %d edges, %d visits, from any pose" (edges ()) (visits ())
-  | Diverges (Some poses) -> say "diverges: %d visits, from %d poses" (visits ()) (List.length poses)
+  | Conforms _ -> say "conforms: %d edges, %s" (edges ()) (way ())
+  | Diverges None -> say "diverges: %d edges, %s, from any pose" (edges ()) (way ())
+  | Diverges (Some poses) -> say "diverges: %s, from %d poses" (way ()) (List.length poses)
   | Fits _ -> say "fits: %d edges, %d visits" (edges ()) (visits_made ())
   | Misfits _ -> say "misfits: %d edges, %d visits" (edges ()) (visits_made ())
+  | Impossible found -> say "impossible: %d visits, %d lines" (visits_made ()) (List.length found)
   | Indistinguishable pairs -> say "indistinguishable: %d pairs" (List.length pairs)
   | Distinguishable walks -> say "distinguishable: %d walks" (List.length walks)
   | Isomorphic _ -> say "isomorphic: %d edges" (edges ())
@@ -270,12 +309,18 @@ let proof print r =
     else List.rev found
   in
   let worlds = worlds [] in
-  let marker_line, _ =
-    line r "world or marker KIND" (function [ "marker"; kind ] -> List.assoc_opt kind markers | _ -> None) in
-  let walked = if r.words = Some [ "walk" ] then Some (walk r) else None in
-  let walk_line = match walked with Some (text, _) -> Some text | None -> None in
-  let visits_line = if r.words = Some [ "visits" ] then Some (visits r) else None in
-  let s = { worlds = items worlds; marker_line; walk_line; visits_line } in
+  let (marker_line, aid_line), _ =
+    line r "world, marker KIND or aid KIND" (function
+      | [ "marker"; kind ] -> Option.map (fun marker -> (marker, None)) (List.assoc_opt kind markers)
+      | [ "aid"; kind ] -> Option.map (fun aid -> (WordNone, Some aid)) (List.assoc_opt kind aids)
+      | _ -> None) in
+  let ran = Option.map (run r) aid_line in
+  let walked = if aid_line = None && r.words = Some [ "walk" ] then Some (walk r) else None in
+  let visits_line = if aid_line = None && r.words = Some [ "visits" ] then Some (visits r) else None in
+  let walk_line = Option.map fst walked and run_line = Option.map fst ran in
+  (* The lines of what was perceived, or done. *)
+  let followed = match (walked, ran) with Some (_, at), _ | None, Some (_, at) -> Some at | None, None -> None in
+  let s = { worlds = items worlds; marker_line; walk_line; visits_line; run_line } in
   let prepared = prepare s in
   let rec claims count =
     match r.words with
@@ -287,9 +332,9 @@ let proof print r =
         | Accepted -> print ("proved: " ^ proved s c)
         | Refused (place, reason) ->
             let line =
-              match (place, walked) with
+              match (place, followed) with
               | InWorld i, _ -> (places worlds).(int i)
-              | AtVisit k, Some (_, seen) when int k < Array.length seen -> seen.(int k)
+              | AtVisit k, Some at when int k < Array.length at -> at.(int k)
               | AtPart k, _ when int k < Array.length parts -> parts.(int k)
               | _ -> at
             in

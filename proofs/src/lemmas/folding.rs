@@ -233,7 +233,7 @@ fn determines_its_world<C: Choose, const LEAST: usize, const MOST: usize, const 
     let Walk { graph, doors, poses, percepts } = any_walk::<LEAST, MOST>(choose, MOVES)?;
     let trail = fold(&percepts, &doors)
         .map_err(|_| Stop::Fails("a walk in a world does not contradict itself"))?;
-    let Some(ClosedTrail { graph: closed, marker, pose }) = trail.closed() else {
+    let Some(ClosedTrail { graph: closed, marker, pose, .. }) = trail.closed() else {
         return Err(Stop::Fails("a trail is not empty"));
     };
     if let (true, Some(marker)) = (trail.is_complete(), marker) {

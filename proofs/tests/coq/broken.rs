@@ -167,6 +167,15 @@ each_definition_matters! {
         "first_not (has_entry compared) (dart_list U)" => "first_not (has_entry compared) [::]";
     the_checker_follows_every_door_that_is_not_known, "Checker.v":
         "else if last then [:: d]" => "else if true then [:: d]";
+    the_checker_chooses_every_door_that_is_not_known, "Checker.v":
+        "(numbers_below fuel N0 seen.1)" => "(numbers_below fuel (N.succ N0) seen.1)";
+    the_checker_asks_for_the_marker_as_seen_by_a_robot_that_comes_back, "Checker.v":
+        "N.modulo (N.add turn j) seen.1 == N.modulo i seen.1"
+        => "N.modulo (N.add turn i) seen.1 == N.modulo j seen.1";
+    a_robot_that_turned_round_comes_back, "Checker.v":
+        "Leaves (back (+) turned) i w k" => "Leaves turned i w k";
+    the_checker_lets_a_robot_drop_only_what_it_carries, "Checker.v":
+        "DeedDrop => if place is None then Some (d, Some d) else None" => "DeedDrop => Some (d, Some d)";
 }
 
 #[test]
