@@ -6,7 +6,8 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::{
-    boundary::{BEARINGS, Boundary, Edge, Sight, direction},
+    bearing::{BEARINGS, direction},
+    boundary::{Boundary, Edge, Sight},
     outline::{Outline, OutlineSide, near},
     wall::WallFrame,
 };

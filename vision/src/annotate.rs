@@ -91,7 +91,7 @@ pub fn boundary(trace: &SensingTrace) -> RgbImage {
     for (bearing, sight) in
         trace.boundary.iter().flat_map(|boundary| boundary.sights.iter().enumerate())
     {
-        let at = |range: f64| Point2::from(range * crate::boundary::direction(bearing));
+        let at = |range: f64| Point2::from(range * crate::bearing::direction(bearing));
         if sight.floor > 0.0 {
             canvas.line(at(0.30), at(sight.floor), REACH);
         }

@@ -3,13 +3,13 @@
 //! Joints between tiles and reflections look like stripes, too, and a wall may have the floor's colour. So a bearing
 //! may have several edges, the last of them sure or not; the neighbouring bearings decide.
 
-use std::{f64::consts::TAU, ops::Range, sync::LazyLock};
+use std::ops::Range;
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::Point2;
 
 use crate::{
+    bearing::{REACH, STEPS, direction, range},
     colour::{PixelClass, Stripe, StripeKind},
-    geometry::unit,
     ground_view::GroundView,
 };
 
@@ -63,31 +63,12 @@ pub struct Edge {
 }
 
 const EDGES: usize = 3;
-/// The number of bearings: one each half degree.
-pub const BEARINGS: usize = 720;
-/// Where the search for floor begins, in metres: the robot's body hides what is nearer.
-const NEAREST: f64 = 0.30;
-/// Where it ends, in metres. Farther away a pixel covers more than a stripe.
-pub const REACH: f64 = 2.6;
-/// Steps along a bearing, one pixel of the ground view each.
-const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
-
 /// How a stripe looks on a bearing.
 #[derive(Clone, Debug)]
 pub struct Bearings {
     /// The width of a stripe that begins at a step and is met at a right angle, in steps.
     width: Vec<f64>,
     pub(crate) stripe: Stripe,
-}
-
-/// The pixels of the ground view on each bearing from the robot outwards, [`STEPS`] for each.
-pub(crate) fn ground_on_bearings() -> impl Iterator<Item = usize> {
-    (0..BEARINGS).flat_map(|bearing| {
-        (0..STEPS).map(move |step| {
-            let point = Point2::from(range(step as f64) * direction(bearing));
-            GroundView::index(point).unwrap_or_default()
-        })
-    })
 }
 
 impl Bearings {
@@ -208,22 +189,6 @@ impl Sight {
 fn floor_follows(behind: impl Iterator<Item = PixelClass>) -> bool {
     let behind = behind.filter(|&class| class != PixelClass::Stripe).take(BEHIND_STEPS);
     behind.filter(|&class| class == PixelClass::Floor).count() >= FLOOR_BEHIND_STEPS
-}
-
-fn range(step: f64) -> f64 {
-    NEAREST + step * GroundView::SCALE
-}
-
-pub fn direction(bearing: usize) -> Vector2<f64> {
-    static DIRECTIONS: LazyLock<[Vector2<f64>; BEARINGS]> = LazyLock::new(|| {
-        std::array::from_fn(|bearing| unit(TAU * bearing as f64 / BEARINGS as f64))
-    });
-    DIRECTIONS[bearing % BEARINGS]
-}
-
-/// The bearing nearest to a direction, in radians counter-clockwise from ahead.
-pub fn bearing(direction: f64) -> usize {
-    (direction.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize % BEARINGS
 }
 
 impl Boundary {

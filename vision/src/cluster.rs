@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Point2, distance};
 
-use crate::boundary::{BEARINGS, Boundary};
+use crate::{bearing::BEARINGS, boundary::Boundary};
 
 /// The largest gap between two successive points at the robot. Views.
 const GAP: f64 = 0.10;

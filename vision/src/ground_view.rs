@@ -11,7 +11,7 @@ use image::RgbImage;
 use nalgebra::Point2;
 
 use crate::{
-    boundary::ground_on_bearings,
+    bearing::{STEP, ground_on_bearings},
     camera::Camera,
     colour::{LitTable, PixelClass},
 };
@@ -44,7 +44,7 @@ struct Unwrapping {
 impl GroundView {
     pub const SIDE: usize = 800;
     /// Metres per pixel.
-    pub const SCALE: f64 = 0.0075;
+    pub const SCALE: f64 = STEP;
     /// Metres from the robot to the middle of each side.
     pub const REACH: f64 = Self::SCALE * Self::SIDE as f64 / 2.0;
     /// The pixels from the robot to the middle of the first row's pixels, and of the first column's.
@@ -139,7 +139,9 @@ impl Unwrapping {
             number.unwrap_or(pixels.len()) as u32
         };
         let shown_by: Vec<u32> = shown_by.iter().map(number).collect();
-        let on_bearings = ground_on_bearings().map(|index| shown_by[index]).collect();
+        let on_bearings = ground_on_bearings()
+            .map(|point| shown_by[GroundView::index(point).unwrap_or_default()])
+            .collect();
         let mut shown: Vec<u32> = (0..shown_by.len() as u32).collect();
         shown.sort_by_key(|&pixel| shown_by[pixel as usize]);
         let before = |number: u32| shown.partition_point(|&at| shown_by[at as usize] < number);
@@ -185,7 +187,10 @@ mod tests {
             let expected: Vec<_> = (0..GroundView::SIDE * GroundView::SIDE).map(expected).collect();
             assert!(view.classes().eq(expected.iter().copied()));
             let on_bearings = view.on_bearings().iter().map(|&number| view.shown(number));
-            assert!(on_bearings.eq(ground_on_bearings().map(|index| expected[index])));
+            assert!(
+                on_bearings.eq(ground_on_bearings()
+                    .map(|point| expected[GroundView::index(point).unwrap_or_default()]))
+            );
             for class in PixelClass::ALL {
                 let of_it = expected.iter().enumerate().filter(|(_, at)| **at == class);
                 assert!(view.pixels_of(class).into_iter().eq(of_it.map(|(index, _)| index)));

@@ -7,7 +7,8 @@ use toposlam_model::driving::scene::{HallwayStatus, HallwayView, Unclear, undire
 
 use crate::{
     agreement::{DOOR_WIDTH, OutlineAgreement},
-    boundary::{BEARINGS, Boundary, bearing, direction},
+    bearing::{BEARINGS, bearing, direction},
+    boundary::Boundary,
     geometry::angle,
     outline::{Outline, Square},
     wall::{Axis, WallFrame, WallSegment},

@@ -227,7 +227,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        boundary::{BEARINGS, Sight, bearing},
+        bearing::{BEARINGS, bearing},
+        boundary::Sight,
         corner::{CornerSource, corners},
         drawn_place::{self, DrawnPlace},
     };

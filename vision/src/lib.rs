@@ -17,6 +17,7 @@
 
 pub mod agreement;
 pub mod annotate;
+pub mod bearing;
 pub mod boundary;
 pub mod camera;
 pub mod cluster;

@@ -7,7 +7,8 @@ use toposlam_model::{
 };
 
 use crate::{
-    boundary::{Boundary, bearing},
+    bearing::bearing,
+    boundary::Boundary,
     colour::PixelClass,
     geometry::angle,
     ground_view::GroundView,

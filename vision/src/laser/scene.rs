@@ -17,7 +17,8 @@ use toposlam_model::driving::{
 
 use super::scan::Scan;
 use crate::{
-    boundary::{BEARINGS, Boundary, Sight, bearing},
+    bearing::{BEARINGS, bearing},
+    boundary::{Boundary, Sight},
     geometry::{angle, from_robot, unit},
     sensing::place_within,
 };
