@@ -127,7 +127,8 @@ impl<'o> CheckReport<'o> {
             writeln!(self.out, "\n{}", heads.collect::<String>())?;
         }
         // The numbers of the largest checks are wider than their columns.
-        let row = cells.iter().map(|(_, width, cell)| format!("  {cell:>width$}", width = width - 2));
+        let row =
+            cells.iter().map(|(_, width, cell)| format!("  {cell:>width$}", width = width - 2));
         writeln!(self.out, "{}", row.collect::<String>().trim_end())?;
         if let Some(runs) = line.runs {
             let some = runs == u128::MAX || line.gave_up.unwrap_or_default() > 0;

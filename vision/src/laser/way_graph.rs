@@ -223,8 +223,8 @@ impl WayGraph {
         };
         let Some(other) = (0..self.ways.len()).find(is_around) else { return false };
         let [one, two] = [way, other].map(|way| judge.driven(&self.ways[way].line));
-        let is_shorter = length < self.ways[other].length;
-        let detour = if one > two || one == two && is_shorter { other } else { way };
+        let by_length = || self.ways[other].length.total_cmp(&length);
+        let detour = if one.total_cmp(&two).then_with(by_length).is_gt() { other } else { way };
         self.remove(detour, judge, degrees);
         true
     }
