@@ -164,7 +164,7 @@ params! {
         /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower.
         unseen_width: f64 = 1.5,
         /// An arm narrower than [`Self::min_width`] whose gap is this many times as wide is a room behind a door. Logs.
-        room_gap: f64 = 5.0,
+        room_gap: f64 = 3.5,
         /// A way ends where one sees a wall ahead that is this part of its width, ... Geometry: less is furniture.
         facing_wall: f64 = 0.6,
         /// ... unless straight walls along this part of it are seen on both sides: then it bends. Logs.
