@@ -32,8 +32,8 @@ const APART: f64 = 0.3;
 /// A wall is straight where it is this near to its usual distance from the line. Logs.
 const STRAIGHT: f64 = 0.25;
 
-/// Lines of sight end in one facing wall if the depths of their ends differ by less than this. Geometry: 16 degrees askew, a
-/// corridor is as deep.
+/// Lines of sight end in one facing wall if the depths of their ends differ by less than this. Geometry: as much as those of a
+/// wall as wide as a corridor that stands 16 degrees askew.
 const THICK: f64 = 0.6;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
