@@ -13,6 +13,7 @@ use std::{
     sync::Arc,
 };
 
+use nalgebra::Point2;
 use nix::sys::{
     resource::{UsageWho, getrusage},
     time::{TimeVal, TimeValLike},
@@ -103,9 +104,7 @@ fn write_log(path: &Path, scans: u32) {
 fn between(steps: &[WalkStep], time: f64) -> (Pose, Odometry) {
     let (from, to) = (&steps[0], &steps[1]);
     let share = (time - from.time) / (to.time - from.time);
-    let position = |from: [f64; 2], to: [f64; 2]| {
-        std::array::from_fn(|axis| from[axis] + share * (to[axis] - from[axis]))
-    };
+    let position = |from, to| Point2::from(from).lerp(&Point2::from(to), share).into();
     let heading = |from: f64, to: f64| wrapped(from + share * wrapped(to - from));
     let pose = Pose {
         position: position(from.pose.position, to.pose.position),

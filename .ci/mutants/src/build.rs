@@ -118,7 +118,9 @@ fn write_bytes(path: &Path, content: &[u8]) -> std::io::Result<()> {
     if fs::read(path).is_ok_and(|old| old == content) {
         return Ok(());
     }
-    fs::create_dir_all(path.parent().expect("a file is in a folder"))?;
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
     fs::write(path, content)
 }
 
@@ -138,7 +140,7 @@ fn find_mutants(package: &Package) -> Result<(Vec<File>, Vec<Mutant>), Box<dyn E
     let mut of_tests = BTreeSet::new();
     for (path, source) in &sources {
         let folder = match path.file_stem().and_then(|stem| stem.to_str()) {
-            Some("lib" | "mod") | None => path.parent().expect("a file is in a folder").to_owned(),
+            Some("lib" | "mod") | None => path.with_file_name(""),
             _ => path.with_extension(""),
         };
         of_tests.extend(site::test_modules(source).into_iter().map(|name| folder.join(name)));
@@ -148,7 +150,9 @@ fn find_mutants(package: &Package) -> Result<(Vec<File>, Vec<Mutant>), Box<dyn E
         let is_of_tests = of_tests
             .iter()
             .any(|module| path.starts_with(module) || path == module.with_extension("rs"));
-        let path = path.to_str().expect("our names are UTF-8").to_owned();
+        let name =
+            path.to_str().ok_or_else(|| format!("{}: its name is not UTF-8", path.display()));
+        let path = name?.to_owned();
         let is_examined = !is_of_tests && (package.has)(&path);
         let sites = if is_examined { site::sites(&source)? } else { Vec::new() };
         let mut first = Vec::new();
@@ -204,9 +208,10 @@ fn cargo(
         let message = &line["message"];
         if line["reason"] == "compiler-artifact" && line["profile"]["test"] == true {
             if let Some(path) = line["executable"].as_str() {
-                let manifest = Path::new(line["manifest_path"].as_str().expect("Cargo names it"));
-                let folder = manifest.parent().expect("a file is in a folder").to_owned();
-                programs.push(TestProgram { path: path.into(), folder });
+                let folder =
+                    line["manifest_path"].as_str().and_then(|path| Path::new(path).parent());
+                let folder = folder.ok_or("Cargo does not name the manifest of a test program")?;
+                programs.push(TestProgram { path: path.into(), folder: folder.to_owned() });
             }
         } else if line["reason"] == "compiler-message" && message["level"] == "error" {
             errors.push(compiler_error(message));

@@ -126,10 +126,7 @@ impl<'o> CheckReport<'o> {
             let heads = cells.iter().map(|(head, width, _)| format!("{head:>width$}"));
             writeln!(self.out, "\n{}", heads.collect::<String>())?;
         }
-        // The numbers of the largest checks are wider than their columns.
-        let row =
-            cells.iter().map(|(_, width, cell)| format!("  {cell:>width$}", width = width - 2));
-        writeln!(self.out, "{}", row.collect::<String>().trim_end())?;
+        writeln!(self.out, "{}", row_text(&cells).trim_end())?;
         if let Some(runs) = line.runs {
             let some = runs == u128::MAX || line.gave_up.unwrap_or_default() > 0;
             let number = |count: Option<u64>| grouped(count.unwrap_or_default().into());
@@ -252,12 +249,26 @@ impl<'o> CheckReport<'o> {
     }
 }
 
+/// A row of the table. The numbers of the largest checks are wider than their columns, and do not run into each other.
+fn row_text(cells: &[Cell]) -> String {
+    let cell =
+        |(_, width, cell): &Cell| format!("  {cell:>width$}", width = width.saturating_sub(2));
+    cells.iter().map(cell).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use toposlam_model::check::Tally;
 
     use super::*;
     use crate::cli::RunChoices;
+
+    #[test]
+    fn numbers_that_are_wider_than_their_columns_do_not_run_into_each_other() {
+        let cells = [("edges", 5, "10"), ("worlds", 11, "613,981,447"), ("starts", 14, "12")];
+        let cells = cells.map(|(head, width, cell)| (head.to_owned(), width, cell.to_owned()));
+        assert_eq!(row_text(&cells), "   10  613,981,447            12");
+    }
 
     #[test]
     fn more_runs_than_64_bits_hold_are_printed_and_read_exactly() {
