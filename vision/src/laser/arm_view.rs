@@ -136,3 +136,21 @@ impl Ray {
         straight.count() as f64 / f64::from(points)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_faces_the_junction_as_far_as_the_farthest_lines_of_sight_end_in_it() {
+        use Cell::{Occupied, Unknown};
+        // A wall 8 m ahead, one beside the way, and the edge of what is seen.
+        let mut ends = vec![(8.0, -0.5, Occupied), (7.6, 0.5, Occupied), (3.0, 1.5, Occupied)];
+        assert!((facing_wall(&ends) - 1.0).abs() < 1e-9);
+        ends.push((7.9, -1.0, Unknown));
+        assert!((facing_wall(&ends) - 1.0).abs() < 1e-9);
+        ends.push((8.1, -1.0, Unknown));
+        assert_eq!(facing_wall(&ends), 0.0, "free space goes on beside it");
+        assert_eq!(facing_wall(&[]), 0.0);
+    }
+}

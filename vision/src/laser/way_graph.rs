@@ -507,6 +507,38 @@ mod tests {
     }
 
     #[test]
+    fn of_two_ways_around_an_obstacle_the_one_that_was_driven_is_left_or_else_the_shorter_one() {
+        let node = |point: [f64; 2]| WayNode { point: point.into(), clearance: 1.0, end: None };
+        let way = |nodes, points: &[[f64; 2]], length| Way {
+            nodes,
+            line: points.iter().map(|&point| (point.into(), 1.0)).collect(),
+            length,
+            is_certain: true,
+        };
+        let (short, long) = ([12.0, 1.0], [12.0, -2.0]);
+        let (left, right) = ([10.0, 0.0], [14.0, 0.0]);
+        let params = LaserParams::default();
+        let map = Clearances::new(map(3, 3, &[]));
+        let kept = |driven: &[Point2<f64>], is_long_first: bool| {
+            let mut around = vec![way([0, 1], &[left, short, right], 4.2)];
+            around.insert(usize::from(!is_long_first), way([1, 0], &[right, long, left], 5.6));
+            around.push(way([2, 0], &[[0.0, 0.0], left], 10.0));
+            around.push(way([1, 3], &[right, [24.0, 0.0]], 10.0));
+            let nodes = [left, right, [0.0, 0.0], [24.0, 0.0]].map(node).to_vec();
+            let mut graph = WayGraph { nodes, ways: around };
+            let judge = ArmJudge { map: &map, viewpoints: &[], driven, params: &params.arm };
+            assert!(graph.remove_detour(0, &judge, &mut graph.degrees()));
+            let [way] = &graph.ways[..] else { panic!("{graph:?}") };
+            [short, long].map(|point| way.line.iter().any(|at| at.0 == Point2::from(point)))
+        };
+        for is_long_first in [false, true] {
+            assert_eq!(kept(&[], is_long_first), [true, false]);
+            assert_eq!(kept(&[short.into()], is_long_first), [true, false]);
+            assert_eq!(kept(&[long.into()], is_long_first), [false, true]);
+        }
+    }
+
+    #[test]
     fn what_no_scan_shows_behind_a_person_in_an_arm_makes_no_junction() {
         let mut grid = map(266, 120, &[[[1, 264], [10, 22]], [[123, 137], [23, 118]]]);
         for row in 36..48 {
