@@ -15,7 +15,7 @@ use toposlam_model::{
 };
 use toposlam_vision::geometry::nearest;
 
-use crate::truth::{JunctionTruth, angle, junction_at};
+use crate::truth::{JunctionTruth, angle, junction_around};
 
 /// Follows a robot in the embedded graph of its floor plan, and checks each arrival at a junction.
 #[derive(Clone, Debug)]
@@ -118,7 +118,7 @@ impl<'p> GroundTruthMonitor<'p> {
     /// The dart of the junction at a pose whose hallway leads in a direction.
     fn dart_at(&self, pose: Pose, entry: f64) -> Option<Dart> {
         let graph = self.plan.graph();
-        let vertex = junction_at(self.plan, pose)?;
+        let vertex = junction_around(self.plan, pose)?;
         let turned = |dart: &Dart| wrapped(angle(self.plan.direction(*dart)) - entry).abs();
         nearest(graph.darts_of(vertex), turned)
     }

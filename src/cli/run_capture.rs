@@ -180,11 +180,6 @@ impl RunObserver for RunCapture<'_> {
                     (last.state, last.command) = (*state, *command);
                 }
             }
-            EventKind::LookAround { turn } => {
-                if let Some(last) = self.rounds.last_mut() {
-                    last.command = Some(Command { turn: *turn, forward: 0.0 });
-                }
-            }
             EventKind::Door { door, .. } => {
                 self.act(Action::Take(*door));
                 self.door = Some(*door);

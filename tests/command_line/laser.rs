@@ -32,7 +32,7 @@ fn the_vertices_of_a_run_are_in_its_log_and_the_command_line_overrides_them() {
     let scratch = Scratch::new("laser_vertices");
     scratch.out("simulate worlds/shape-6.toml --sensor laser --noise 0.1 --log run.mcap", 0);
     let bytes = std::fs::read(scratch.path("run.mcap")).unwrap();
-    let recorded: &[u8] = b"min-arm=3 corners=no";
+    let recorded: &[u8] = b"min-arm=3 corners=yes";
     assert!(bytes.windows(recorded.len()).any(|part| part == recorded));
     let visits = |options: &str| {
         let output = scratch.run(&format!("conform run.mcap {LASER} --json {options}"));
@@ -43,7 +43,7 @@ fn the_vertices_of_a_run_are_in_its_log_and_the_command_line_overrides_them() {
         ("[visit]\nrange = 4.0", true),
         ("[arm]\nmin_arm = 3.0", true),
         ("[arm]\nmin_arm = 10.0", false),
-        ("[corner]\ncorners = true", false),
+        ("[corner]\ncorners = true", true),
     ] {
         std::fs::write(scratch.path("params.toml"), params).unwrap();
         assert_eq!(visits("--laser-params params.toml") == by_log, is_same, "{params}");
