@@ -132,7 +132,11 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.returns_at_obstacles |= settings.method.recovers();
         self.begins_anywhere = !settings.earlier.is_empty();
         let aid = settings.method.algorithm().aid();
-        self.sought = SoughtMarker::of(aid);
+        self.sought = match aid {
+            AidKind::Markers(_) => SoughtMarker::Lying,
+            AidKind::Team(_) => SoughtMarker::Nothing,
+            _ => SoughtMarker::Pointing,
+        };
         self.has_team = matches!(aid, AidKind::Team(_));
         self.map_building(settings)
     }

@@ -8,10 +8,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::ops::RangeInclusive;
 
 use super::scene::{JunctionView, MarkerView, Place, Scene, undirected, wrapped};
-use crate::{
-    aid::AidKind,
-    percept::{Door, Percept, Sighting},
-};
+use crate::percept::{Door, Percept, Sighting};
 
 /// What a junction looks like from its entry: which of the four directions, clockwise from the entry
 /// door, are doors. The first always is.
@@ -38,17 +35,6 @@ pub enum SoughtMarker {
     Lying,
     /// The robot looks for none on its way.
     Nothing,
-}
-
-impl SoughtMarker {
-    /// That of a robot with this marking aid.
-    pub fn of(aid: AidKind) -> Self {
-        match aid {
-            AidKind::Markers(_) => Self::Lying,
-            AidKind::Team(_) => Self::Nothing,
-            _ => Self::Pointing,
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

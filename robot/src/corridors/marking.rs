@@ -3,11 +3,8 @@
 use nalgebra::Point2;
 use toposlam_logs::record::{EventKind, RunObserver};
 use toposlam_model::{
-    aid::AidAction,
-    driving::{
-        scene::{undirected, wrapped},
-        visit::SoughtMarker,
-    },
+    aid::{AidAction, AidKind},
+    driving::scene::{undirected, wrapped},
     percept::{Door, OtherRobot, Sighting, TeamView},
     world::AidHandler,
 };
@@ -18,6 +15,31 @@ use crate::{
     explorer::{ExplorerError, MappingRobot},
     robot::{Robot, RobotError},
 };
+
+/// For what a robot looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Sought {
+    /// A marker that points along a door.
+    #[default]
+    Pointing,
+    /// Markers that point along no door.
+    Lying,
+    /// The other robot of its team.
+    Team,
+    /// Nothing: another robot sends it.
+    Nothing,
+}
+
+impl Sought {
+    /// That of a robot with this marking aid.
+    pub(super) fn of(aid: AidKind) -> Self {
+        match aid {
+            AidKind::Markers(_) => Self::Lying,
+            AidKind::Team(_) => Self::Team,
+            _ => Self::Pointing,
+        }
+    }
+}
 
 /// The other robot is not there if so many scans in a row do not show it.
 const LOOKS: u32 = 3;
@@ -30,14 +52,11 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         extent: f64,
         doors: &[f64],
     ) -> Result<Sighting, Stop> {
-        if self.has_team {
-            return self.sighting_of_team(centre, extent, doors);
-        }
-        let Some(marker) = self.marker_at(centre, extent) else { return Ok(Sighting::Nothing) };
-        match self.sought {
-            SoughtMarker::Nothing => Ok(Sighting::Nothing),
-            SoughtMarker::Lying => Ok(Sighting::Lying(1)),
-            SoughtMarker::Pointing => {
+        match (self.sought, self.marker_at(centre, extent)) {
+            (Sought::Team, _) => self.sighting_of_team(centre, extent, doors),
+            (Sought::Nothing, _) | (_, None) => Ok(Sighting::Nothing),
+            (Sought::Lying, Some(_)) => Ok(Sighting::Lying(1)),
+            (Sought::Pointing, Some(marker)) => {
                 let door = door_of(&marker, centre, doors, self.driving);
                 Ok(Sighting::Pointing(door.ok_or(CorridorFailure::Undecided)?))
             }
@@ -80,7 +99,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     /// The same robot, if another one sends it, so that it looks for no marker. Someone else moves it between two doors.
     #[must_use]
     pub fn sent(mut self) -> Self {
-        (self.sought, self.is_sent) = (SoughtMarker::Nothing, true);
+        self.sought = Sought::Nothing;
         self
     }
 }

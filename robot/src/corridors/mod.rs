@@ -21,12 +21,11 @@ use std::{
 use nalgebra::{Isometry2, Point2};
 use toposlam_logs::record::{Arrival, EventKind, Frame, RunObserver};
 use toposlam_model::{
-    aid::AidKind,
     driving::{
         algorithm2::JunctionState,
         odometry::Odometry,
         scene::{MarkerView, wrapped},
-        visit::{JunctionShape, SoughtMarker},
+        visit::JunctionShape,
     },
     mapping::{MapWalk, MappedWorld, MappingError, Relocate},
     percept::{Door, Percept, Sighting},
@@ -47,6 +46,7 @@ use crate::{
     robot::{Robot, RobotError},
     run_settings::RunSettings,
 };
+use marking::Sought;
 use params::CorridorParams;
 use trail::Trail;
 
@@ -80,10 +80,7 @@ pub struct CorridorExplorer<R, O = ()> {
     is_at_opening: bool,
     /// What it has seen on a side trip while it was near the place where that began.
     side_trip: Option<SideTrip>,
-    sought: SoughtMarker,
-    has_team: bool,
-    /// Whether another robot sends it.
-    is_sent: bool,
+    sought: Sought,
     /// The marker, or the other robot of the team, where it was seen last.
     marker: Option<SeenMarker>,
     /// The place where it stands, with the directions of its doors, clockwise from the one by which it came in.
@@ -177,9 +174,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             looked: None,
             is_at_opening: false,
             side_trip: None,
-            sought: SoughtMarker::Pointing,
-            has_team: false,
-            is_sent: false,
+            sought: Sought::default(),
             marker: None,
             place: None,
             returns_at_obstacles: false,
@@ -240,9 +235,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         settings: &RunSettings,
     ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
         self.returns_at_obstacles |= settings.method.recovers();
-        let aid = settings.method.algorithm().aid();
-        self.sought = SoughtMarker::of(aid);
-        self.has_team = matches!(aid, AidKind::Team(_));
+        self.sought = Sought::of(settings.method.algorithm().aid());
         self.map_building(settings)
     }
 

@@ -4,17 +4,16 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Point2;
 use toposlam_logs::record::RunObserver;
-use toposlam_model::{
-    driving::{scene::wrapped, visit::SoughtMarker},
-    percept::Sighting,
-};
+use toposlam_model::{driving::scene::wrapped, percept::Sighting};
 use toposlam_vision::{
     geometry::{direction, distance, unit},
     laser::navigation::{LineEnd, WayAhead, WayChoice, along},
     place::SeenPlace,
 };
 
-use super::{CorridorExplorer, CorridorFailure, LeftPlace, StoodAt, Stop, trail::Turn};
+use super::{
+    CorridorExplorer, CorridorFailure, LeftPlace, StoodAt, Stop, marking::Sought, trail::Turn,
+};
 use crate::robot::Robot;
 
 /// Why a robot does not go on.
@@ -62,7 +61,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         };
         for door in doors.iter().rev() {
             let is_seen = self.place.as_ref().is_some_and(|at| at.sighting != Sighting::Nothing);
-            if is_seen || self.sought == SoughtMarker::Nothing {
+            if is_seen || self.sought == Sought::Nothing {
                 break;
             }
             self.look_from_further(*door)?;
@@ -79,7 +78,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             self.look_around()?;
             let (centre, extent) = (self.on_local_map(), self.driving.end_extent);
             self.left = Some(LeftPlace { centre, extent, is_junction: true });
-        } else if self.is_sent {
+        } else if self.sought == Sought::Nothing {
+            // Another robot has moved it.
             self.sense()?;
         }
         self.heading = towards;
