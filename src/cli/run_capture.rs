@@ -9,10 +9,7 @@ use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
 use toposlam_logs::record::{Event, EventKind, Frame, RunObserver};
 use toposlam_model::{
     aid::{Action, AidKind},
-    driving::{
-        algorithm2::{Command, PathState},
-        pose::Pose,
-    },
+    driving::{algorithm2::PathState, pose::Pose},
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::FloorPlan,

@@ -1,5 +1,7 @@
 //! What a robot in corridors sees of its marker, or of the other robot of its team, and what it does with it.
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::Point2;
 use toposlam_logs::record::{EventKind, RunObserver};
 use toposlam_model::{
@@ -86,7 +88,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             }
         }
         let here = self.marker_at(centre, extent);
-        let here = here.and_then(|seen| door_towards(direction(centre, seen.at), doors));
+        let here = here.and_then(|seen| door_along(&seen, centre, doors));
         let other = match here {
             Some(door) => OtherRobot::HereAlong(door),
             None => OtherRobot::Elsewhere {
@@ -137,6 +139,17 @@ fn door_towards(towards: f64, doors: &[f64]) -> Option<Door> {
     door.filter(|door| off(door) < CorridorParams::DEFAULT.same_arm).map(|door| Door(door as u32))
 }
 
+/// The door along the longer side of what is seen, on the side where it lies.
+fn door_along(seen: &SeenMarker, centre: Point2<f64>, doors: &[f64]) -> Option<Door> {
+    let towards = direction(centre, seen.at);
+    let is_along = |door: &usize| {
+        undirected(doors[*door] - seen.axis).abs() < CorridorParams::DEFAULT.same_arm
+            && wrapped(doors[*door] - towards).abs() < FRAC_PI_2
+    };
+    let off = |door: &usize| wrapped(doors[*door] - towards).abs();
+    nearest((0..doors.len()).filter(is_along), off).map(|door| Door(door as u32))
+}
+
 /// The door that a marker shows: the one in whose direction it lies, or if it lies near the centre, the only one along its
 /// longer side.
 fn door_of(
@@ -174,5 +187,16 @@ mod tests {
         assert_eq!(shown([0.1, 0.2], 0.1, &corner), Some(Door(0)));
         assert_eq!(shown([0.1, 0.2], -1.5, &corner), Some(Door(1)));
         assert_eq!(shown([0.1, 0.2], 0.0, &tee), None, "two doors are along it");
+    }
+
+    #[test]
+    fn a_robot_that_waits_is_seen_in_its_hallway_though_it_is_off_the_middle() {
+        let seen = |at: [f64; 2], axis: f64| {
+            let seen = SeenMarker { at: at.into(), axis, way: 0.0 };
+            door_along(&seen, Point2::origin(), &[PI, FRAC_PI_2, 0.0])
+        };
+        assert_eq!(seen([0.3, 0.4], 0.1), Some(Door(2)), "in the hallway ahead, to its left");
+        assert_eq!(seen([0.3, 0.4], 1.5), Some(Door(1)));
+        assert_eq!(seen([0.1, -0.5], 1.5), None, "there is a wall");
     }
 }

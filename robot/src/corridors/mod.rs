@@ -32,7 +32,7 @@ use toposlam_model::{
     world::{AidHandler, World},
 };
 use toposlam_vision::{
-    geometry::{clockwise, distance, from_robot},
+    geometry::{distance, from_robot},
     laser::{local_map::LocalMap, params::LaserParams, scan::Scan, sensor::LaserSensor},
     place::SeenPlace,
     visits::Visits,
@@ -393,25 +393,9 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             number: number.and_then(|number| u32::try_from(number).ok()),
             degree: percept.degree,
             sighting: Some(percept.sighting),
-            shape: self.shape_of(&doors),
+            shape: None,
             entry: doors.first().copied(),
         }));
-    }
-
-    /// The shape of a place in a building with right angles; `None` in another one, and before an obstacle.
-    fn shape_of(&self, doors: &[f64]) -> Option<JunctionShape> {
-        if !self.params.corner.corners || self.is_blocked {
-            return None;
-        }
-        let entry = doors.first()?;
-        let mut quarters = [false; 4];
-        for door in doors {
-            let quarter = (clockwise(*entry, *door) / FRAC_PI_2).round() as usize % 4;
-            if std::mem::replace(&mut quarters[quarter], true) {
-                return None;
-            }
-        }
-        Some(JunctionShape(quarters))
     }
 
     /// The place where it stands. At the very start, it drives to its first one, unless it begins at a vertex.
