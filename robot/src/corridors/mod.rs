@@ -447,7 +447,7 @@ impl<R: Robot, O: RunObserver> World for CorridorExplorer<R, O> {
         }
         self.moves += 1;
         self.report_arrival(Some(self.last_move));
-        Ok(())
+        self.turn_away_from_entry().map_err(|stop| self.error(stop))
     }
 
     fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = ExplorerError>> {

@@ -70,6 +70,15 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         Ok(())
     }
 
+    /// A robot that another one sends waits with its back to the door by which it came.
+    pub(super) fn turn_away_from_entry(&mut self) -> Result<(), Stop> {
+        let entry = self.place.as_ref().and_then(|place| place.doors.first());
+        if let Some(&entry) = entry.filter(|_| self.sought == Sought::Nothing) {
+            self.robot.turn(self.odometry().seen(wrapped(entry + PI)))?;
+        }
+        Ok(())
+    }
+
     /// Drives away in a direction until it is at a junction or a dead end.
     pub(super) fn drive(&mut self, towards: f64) -> Result<(), Stop> {
         (self.place, self.is_blocked) = (None, false);
