@@ -41,7 +41,7 @@ pub struct Judgement {
     pub divergence: Option<Divergence>,
     /// A divergence that accuses nobody, and why.
     pub contradiction: Option<(Divergence, Unproved)>,
-    /// The visits of a laser log, which decide its verdict.
+    /// The visits as sets, which decide the verdict: of a log of scans, and of one of images if some are not certain.
     pub possible: Option<PossibleVisits>,
     /// The index of the first arrival after the robot got lost. Without a known world, the events from there on are
     /// compared with no world.
@@ -436,7 +436,12 @@ impl Judgement {
         Ok(Self { events: self.events, unrecognised: Some(event), ..before })
     }
 
-    /// The judgement of visits that were inferred from scans. Where some are not certain, they are judged as sets.
+    /// Whether it ends at a visit that is not certain, and nothing diverged before.
+    pub(super) fn is_open_at_visit(&self) -> bool {
+        self.unrecognised.is_some() && self.divergence.is_none()
+    }
+
+    /// The judgement of visits that were inferred from scans or images. Where some are not certain, they are judged as sets.
     pub(super) fn with_possible(self, possible: PossibleVisits) -> Self {
         // Without the visits that are not certain, what the others show is no world.
         let is_certain = self.unrecognised.is_none() && !possible.is_unreliable();

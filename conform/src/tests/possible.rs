@@ -1,10 +1,14 @@
-//! Visits of a laser log that the scans do not decide: what fits, and that nobody is accused on a guess.
+//! Visits that scans or images do not decide: what fits, and that nobody is accused on a guess.
 
+use toposlam_logs::{messages, reader, recorder::Recorder};
 use toposlam_model::{
     aid::AidKind,
+    driving::scene::{JunctionView, Place as SeenPlace, Scene},
     embedded_graph::EmbeddedGraph,
+    format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
     marker::{Directional, NoMarker},
+    proof::Claim,
     trace::anywhere,
 };
 use toposlam_vision::visits::{
@@ -12,7 +16,10 @@ use toposlam_vision::visits::{
     network_fit::{NetworkFault, NetworkFit},
 };
 
-use super::*;
+use super::{
+    recovery::{check_log, check_of_scenes, head_of},
+    *,
+};
 use crate::{
     DrivenVisits, PossibleVisits, UndecidedCause, Unproved, VisitFit, VisitedJunction,
     known_world::KnownWorld,
@@ -256,5 +263,93 @@ fn visits_without_odometry_or_in_a_building_that_is_no_network_of_corridors_deci
         let possible = found.possible.clone().unwrap().without_odometry(true);
         let open = found.with_possible(possible);
         assert_eq!((open.verdict(), open.smallest), (ConformVerdict::NotKnown, None));
+    }
+}
+
+/// Records a run, and doubts what is seen near a point.
+struct Doubtful<O> {
+    log: O,
+    near: Option<[f64; 2]>,
+    /// Where the robot was at each arrival.
+    arrivals: Vec<[f64; 2]>,
+    at: [f64; 2],
+}
+
+impl<O: RunObserver> RunObserver for Doubtful<O> {
+    fn event(&mut self, event: &Event) {
+        let mut event = event.clone();
+        match &mut event.kind {
+            EventKind::Frame(Frame { scene: Some(Scene { place, .. }), odometry, .. }) => {
+                self.at = odometry.position;
+                let is_near = |near: [f64; 2]| {
+                    let near = Odometry { position: near, ..Odometry::default() };
+                    near.distance(odometry) < 1.5
+                };
+                if let SeenPlace::Junction(JunctionView { confidence, .. }) = place
+                    && self.near.is_some_and(is_near)
+                {
+                    *confidence = 0.5;
+                }
+            }
+            EventKind::Arrival(_) => self.arrivals.push(self.at),
+            _ => {}
+        }
+        self.log.event(&event);
+    }
+}
+
+/// The log of a run of the folding explorer in shape 8, and its head. The scenes near one of its visits are in doubt.
+fn doubtful_log(visit: usize) -> (reader::Log, messages::Run) {
+    let (plan, facing) = place_in("shape-8");
+    let settings = RunSettings::new(MappingAlgorithm::Folding, DARTS);
+    let head = head_of(&settings);
+    let record = |near| {
+        let mut bytes = Vec::new();
+        let robot = SimulationConfig::at_start(plan.clone(), facing, 1);
+        let robot = SimulationConfig { keeps_track: true, ..robot }.by_scene();
+        let arrivals = {
+            let log = Recorder::new(&mut bytes, &head, None).unwrap();
+            let mut observer = Doubtful { log, near, arrivals: Vec::new(), at: [0.0; 2] };
+            run(&plan, facing, robot, NoSensor, &mut observer, &settings);
+            observer.log.finish().unwrap();
+            observer.arrivals
+        };
+        (bytes, arrivals)
+    };
+    let arrivals = record(None).1;
+    (reader::Log::of_bytes(record(Some(arrivals[visit])).0).unwrap(), head)
+}
+
+#[test]
+fn scenes_that_do_not_decide_a_visit_are_judged_as_sets() {
+    let world_of = |name| {
+        let (plan, facing) = place_in(name);
+        NamedWorld::numbered(name, "", plan.graph().clone(), Some(facing))
+    };
+    let (own, other) = (world_of("shape-8"), world_of("shape-6"));
+    for visit in 1..8 {
+        let (log, head) = doubtful_log(visit);
+        let judged = |world, doors| {
+            let check = LogCheck { doors, ..check_of_scenes(world) };
+            let checked = check_log(&check, &log, &head);
+            let possible = checked.judgement.possible.as_ref();
+            let proofs = checked.proofs().unwrap();
+            let is_fit =
+                proofs.iter().all(|proof| matches!(proof.claims[..], [Claim::Fits { .. }]));
+            let fits = possible.is_some_and(|sets| sets.fit == VisitFit::Fits);
+            assert_eq!(is_fit, fits, "{visit}");
+            (checked.judgement.verdict(), possible.map(|sets| (sets.fit, sets.algorithm)))
+        };
+        let fits = VisitFit::Fits;
+        for world in [Some(&own), None] {
+            let by_anyone = judged(world, DoorChooser::Anyone);
+            assert_eq!(by_anyone, (ConformVerdict::Conforms, Some((fits, None))), "{visit}");
+        }
+        // The map that the log records is compared with that of certain percepts alone.
+        let by_algorithm = judged(Some(&own), DoorChooser::Algorithm(None));
+        let not_known = (ConformVerdict::NotKnown, Some((fits, Some(fits))));
+        assert_eq!(by_algorithm, not_known, "{visit}");
+        let elsewhere = judged(Some(&other), DoorChooser::Anyone);
+        assert_ne!(elsewhere.0, ConformVerdict::Conforms, "{visit}");
     }
 }

@@ -1,5 +1,7 @@
 //! Logs of robots that recover, that got lost, and that turn back to keep within a budget.
 
+use std::sync::LazyLock;
+
 use toposlam_logs::{messages, reader, recorder::Recorder, topic_map::TopicMap};
 use toposlam_model::{
     aid::AidKind,
@@ -164,6 +166,38 @@ fn a_robot_that_recovers_does_not_end_with_lengths_that_contradict_each_other() 
     assert_eq!(judgement.divergence.unwrap().cause.name(), "moved");
 }
 
+/// The head of the log of a run.
+pub(super) fn head_of(settings: &RunSettings) -> messages::Run {
+    messages::Run {
+        marker: "directional".to_owned(),
+        algorithm: settings.recorded().to_string(),
+        ..messages::Run::default()
+    }
+}
+
+/// The check of the scenes of a log against the specification of its algorithm.
+pub(super) fn check_of_scenes(world: Option<&NamedWorld>) -> LogCheck<'_> {
+    static NONE: LazyLock<Quirks> = LazyLock::new(Quirks::default);
+    LogCheck {
+        evidence: Evidence::Scenes,
+        laser: LaserParams::default(),
+        world,
+        start: RobotStart::Recorded,
+        aid: None,
+        assumes_marker: false,
+        doors: DoorChooser::Algorithm(None),
+        search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 10_000 },
+        max_darts: None,
+        quirks: &NONE,
+    }
+}
+
+pub(super) fn check_log(check: &LogCheck, log: &reader::Log, head: &messages::Run) -> CheckedLog {
+    let topics = TopicMap::unambiguous(log);
+    let source = LogSource { log, topics: &topics, head: Some(head), sensor: None };
+    check.run(&source, &(), || {}).unwrap()
+}
+
 /// The judgements of the scenes of a run that recovers from a fault: with and without its world, with and without its
 /// algorithm, with a search that ends early, and with other markers.
 fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
@@ -173,18 +207,12 @@ fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
     let (plan, facing) = (&place.0, place.1);
     let robot = SimulationConfig::at_start(plan.clone(), facing, seed);
     let robot = SimulationConfig { faults, keeps_track: true, ..robot };
-    let head = messages::Run {
-        marker: "directional".to_owned(),
-        algorithm: settings.recorded().to_string(),
-        ..messages::Run::default()
-    };
     let mut log = Vec::new();
+    let head = head_of(&settings);
     let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
     run(plan, facing, robot.by_scene(), NoSensor, &mut recorder, &settings);
     recorder.finish().unwrap();
     let log = reader::Log::of_bytes(log).unwrap();
-    let topics = TopicMap::unambiguous(&log);
-    let source = LogSource { log: &log, topics: &topics, head: Some(&head), sensor: None };
     let world = NamedWorld::numbered(name, "", plan.graph().clone(), Some(facing));
     let anyone = DoorChooser::Anyone;
     let marked = [
@@ -195,18 +223,13 @@ fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
     ];
     let check = |(doors, marker): (_, Option<MarkerKind>), world, start, steps| {
         let check = LogCheck {
-            evidence: Evidence::Scenes,
-            laser: LaserParams::default(),
-            world,
             start,
             aid: marker.map(AidKind::from),
-            assumes_marker: false,
             doors,
             search: WorldSearch { class: Class::Multigraph, max_edges: None, steps },
-            max_darts: None,
-            quirks: &Quirks::default(),
+            ..check_of_scenes(world)
         };
-        check.run(&source, &(), || {}).unwrap().judgement
+        check_log(&check, &log, &head).judgement
     };
     let (recorded, anywhere) = (RobotStart::Recorded, RobotStart::Anywhere);
     let ways = [

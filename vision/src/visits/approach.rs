@@ -189,7 +189,9 @@ impl<S: Copy + Default> ApproachRule<S> {
             VisitExit { at, direction, off }
         });
         let (shape, sighting) = (Some(shape), Some(percept.sighting));
-        log.push(Visit { arms, exit, shape, sighting, doubt: None, ..undecided }, |_| *driven);
+        let visit = Visit { arms, exit, shape, sighting, doubt: None, ..undecided };
+        let goes_back = visit.percept().door == Some(0);
+        log.push(Visit { goes_back, ..visit }, |_| *driven);
         self.way = *onwards;
     }
 }
