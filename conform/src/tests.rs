@@ -31,6 +31,7 @@ use super::*;
 
 mod extracted;
 mod folding;
+mod log_check;
 mod measured;
 mod moving;
 mod oracle;

@@ -32,6 +32,8 @@ impl Mutant {
 pub struct TestProgram {
     pub path: PathBuf,
     pub folder: PathBuf,
+    /// Whether it tests the whole program, and not one crate.
+    pub is_of_program: bool,
 }
 
 pub struct Build {
@@ -211,7 +213,9 @@ fn cargo(
                 let folder =
                     line["manifest_path"].as_str().and_then(|path| Path::new(path).parent());
                 let folder = folder.ok_or("Cargo does not name the manifest of a test program")?;
-                programs.push(TestProgram { path: path.into(), folder: folder.to_owned() });
+                let (path, folder) = (path.into(), folder.to_owned());
+                let is_of_program = folder == fs::canonicalize(copy)?;
+                programs.push(TestProgram { path, folder, is_of_program });
             }
         } else if line["reason"] == "compiler-message" && message["level"] == "error" {
             errors.push(compiler_error(message));

@@ -20,8 +20,9 @@ Usage: .ci/mutants/run PACKAGE [TEXT]... [--since BASE] [--jobs J] [--list]
 Makes one small change after another in a package, and runs the tests that reach
 it. A test that fails, or that does not end, has caught the mutant.
 
-  PACKAGE       model, conform, or a part of vision: laser, visits (with the
-                tests of conformance), or vision for the rest
+  PACKAGE       model, conform (with the tests of its command), or a part of
+                vision: laser, visits (with the tests of conformance), or vision
+                for the rest
   TEXT          only the mutants whose names contain one of these texts, such as
                 vision/src/laser/
   --since BASE  only the mutants in files that have changed since commit BASE
@@ -46,6 +47,13 @@ struct Package {
     tests: &'static [&'static str],
     /// Tests with these texts in their names are left out.
     without: &'static [&'static str],
+    /// Of the tests of the whole program, the ones that run.
+    of_program: &'static [&'static str],
+}
+
+/// The bodies of fuzz targets are tests.
+fn is_fuzzing(file: &str) -> bool {
+    file.contains("/src/fuzz")
 }
 
 const LASER: &str = "vision/src/laser/";
@@ -59,6 +67,7 @@ const PACKAGES: &[Package] = &[
         tests: &["-p", "toposlam-model", "--lib", "--test", "all"],
         // Larger worlds catch nothing that smaller ones do not.
         without: &["costs::the_table_of_every_small_start_is_true"],
+        of_program: &[],
     },
     Package {
         name: "laser",
@@ -66,13 +75,15 @@ const PACKAGES: &[Package] = &[
         has: |file| file.starts_with(LASER),
         tests: &["-p", "toposlam-vision", "--lib"],
         without: &[],
+        of_program: &[],
     },
     Package {
         name: "vision",
         folder: "vision",
-        has: |file| !file.starts_with(LASER) && !file.starts_with(VISITS),
+        has: |file| !file.starts_with(LASER) && !file.starts_with(VISITS) && !is_fuzzing(file),
         tests: &["-p", "toposlam-vision", "--lib", "--test", "all"],
         without: &[],
+        of_program: &[],
     },
     Package {
         name: "visits",
@@ -80,13 +91,31 @@ const PACKAGES: &[Package] = &[
         has: |file| file.starts_with(VISITS),
         tests: &["-p", "toposlam-vision", "-p", "toposlam-conform", "--lib"],
         without: &[],
+        of_program: &[],
     },
     Package {
         name: "conform",
         folder: "conform",
-        has: |_| true,
-        tests: &["-p", "toposlam-conform", "--lib"],
+        has: |file| !is_fuzzing(file),
+        tests: &[
+            "-p",
+            "toposlam-conform",
+            "-p",
+            "toposlam",
+            "--lib",
+            "--test",
+            "all",
+            "--test",
+            "snapshots",
+        ],
         without: &[],
+        // Reports are printed by the command.
+        of_program: &[
+            "command_line::facts::conform",
+            "command_line::facts::lines",
+            "command_line::facts::walks",
+            "conform",
+        ],
     },
 ];
 
@@ -168,7 +197,7 @@ fn examine(options: &Options) -> Result<bool, Box<dyn Error>> {
     let compiled: Vec<usize> =
         selected.iter().copied().filter(|&mutant| built.mutants[mutant].compiles).collect();
     eprintln!("{} mutants, of which {} compile", selected.len(), compiled.len());
-    let tests = tests::record(&built.programs, package.without, options.jobs)?;
+    let tests = tests::record(&built.programs, package, options.jobs)?;
     let is_done = |done: usize, mutant: usize, outcome: Outcome| {
         let mutant = &built.mutants[mutant];
         if outcome.survives() && !listed.contains(&mutant.name()) {

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::build::TestProgram;
+use crate::{Package, build::TestProgram};
 
 pub struct Test {
     program: usize,
@@ -44,7 +44,7 @@ impl Outcome {
 /// Returns an error if a test fails.
 pub fn record(
     programs: &[TestProgram],
-    without: &[&str],
+    package: &Package,
     jobs: usize,
 ) -> Result<Vec<Test>, Box<dyn Error>> {
     let mut tests = Vec::new();
@@ -59,8 +59,13 @@ pub fn record(
                 .collect())
         };
         let ignored = list(&["--ignored"])?;
+        let runs = |name: &String| {
+            !ignored.contains(name)
+                && !package.without.iter().any(|left_out| name.contains(left_out))
+                && (!at.is_of_program || package.of_program.contains(&&**name))
+        };
         for name in list(&[])? {
-            if !ignored.contains(&name) && !without.iter().any(|left_out| name.contains(left_out)) {
+            if runs(&name) {
                 tests.push(Test { program, name, time: Duration::ZERO, reached: HashSet::new() });
             }
         }
