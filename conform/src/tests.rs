@@ -40,6 +40,7 @@ mod possible;
 mod recovery;
 mod report;
 mod tolerance;
+mod undirected;
 mod verdicts;
 
 const DARTS: usize = 400;

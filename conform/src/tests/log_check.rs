@@ -1,6 +1,9 @@
 //! What a check takes from the log, from its topic map, and from what is asked.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::{
+    f64::consts::{FRAC_PI_2, PI},
+    sync::atomic::{AtomicU64, Ordering},
+};
 
 use toposlam_logs::{
     messages::{self, Stamp},
@@ -14,6 +17,7 @@ use toposlam_model::{
     aid::{AidKind, markers::MOVABLE},
     driving::pose::Pose,
     embedded_graph::EmbeddedGraph,
+    enumerate::Watch,
     format::named_world::NamedWorld,
     marker::{MarkerKind, NoMarker, Undirected},
 };
@@ -94,9 +98,11 @@ fn lines(visits: &[(u32, u32, Option<u32>)]) -> Vec<u8> {
     visits.iter().map(line).collect::<String>().into_bytes()
 }
 
-/// The log of a robot with a laser scanner that drives along these points, and sees a tag at a pose once, when it is there.
-fn scanned(corridors: &[[[f64; 2]; 2]], way: &[[f64; 2]], tag: Option<Odometry>) -> Vec<u8> {
-    let corridor = |ends: &[[f64; 2]; 2]| Corridor { ends: ends.map(Into::into), width: 2.0 };
+/// The log of a robot with a laser scanner that drives along these points, in corridors with these ends and widths, and sees
+/// a tag at a pose once, when it is there.
+fn scanned(corridors: &[([[f64; 2]; 2], f64)], way: &[[f64; 2]], tag: Option<Odometry>) -> Vec<u8> {
+    let corridor =
+        |&(ends, width): &([[f64; 2]; 2], f64)| Corridor { ends: ends.map(Into::into), width };
     let plan =
         CorridorPlan { corridors: corridors.iter().map(corridor).collect(), lobbies: Vec::new() };
     let scanner = LaserScanner::new(&plan, &ScannerParams::PLAIN, 1);
@@ -127,11 +133,11 @@ fn scanned(corridors: &[[[f64; 2]; 2]], way: &[[f64; 2]], tag: Option<Odometry>)
 }
 
 /// A fork at the origin, with corridors to the west, the south and the east; the southern one bends.
-const FORK: [[[f64; 2]; 2]; 4] = [
-    [[-14.0, 0.0], [0.0, 0.0]],
-    [[0.0, 0.0], [14.0, 0.0]],
-    [[0.0, 0.0], [0.0, -14.0]],
-    [[0.0, -14.0], [14.0, -14.0]],
+const FORK: [([[f64; 2]; 2], f64); 4] = [
+    ([[-14.0, 0.0], [0.0, 0.0]], 2.0),
+    ([[0.0, 0.0], [14.0, 0.0]], 2.0),
+    ([[0.0, 0.0], [0.0, -14.0]], 2.0),
+    ([[0.0, -14.0], [14.0, -14.0]], 2.0),
 ];
 
 /// The log of a robot that comes from the west and goes on to the east, past a tag at the fork that points south.
@@ -340,4 +346,28 @@ fn a_marker_that_is_assumed_or_seen_is_that_of_a_laser_log_and_there_is_one() {
         let error = question.checked().unwrap_err();
         assert!(matches!(error, CheckError::MarkerPlace(found) if found == expected), "{error}");
     }
+}
+
+/// Counts the scans that are done.
+#[derive(Default)]
+struct Done(AtomicU64);
+
+impl Watch for Done {
+    fn part_done(&self, cases: u64) {
+        self.0.fetch_add(cases, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn each_scan_is_done_once_and_a_hall_is_where_free_space_is_wider_than_a_corridor() {
+    let hall = [([[-14.0, 0.0], [0.0, 0.0]], 2.0), ([[4.0, 0.0], [14.0, 0.0]], 9.0)];
+    let way = [-10.0, 12.0, -10.0, 12.0, -10.0].map(|x| [x, 0.0]);
+    let log = reader::Log::of_bytes(scanned(&hall, &way, None)).unwrap();
+    let topics = TopicMap::unambiguous(&log);
+    let done = Done::default();
+    let run = extract(&log, &topics, &ExtractConfig::new(Evidence::Laser), &done).unwrap();
+    // Up to the last scan that is a view.
+    assert_eq!((run.scans, done.0.into_inner()), (176, 175));
+    let in_hall = run.wide.iter().filter(|place| place.x > 1.0).count();
+    assert!(in_hall > 30 && in_hall == run.wide.len(), "{:?}", run.wide);
 }
