@@ -32,6 +32,7 @@ use super::*;
 mod extracted;
 mod folding;
 mod log_check;
+mod log_report;
 mod measured;
 mod moving;
 mod oracle;

@@ -62,7 +62,8 @@ pub fn record(
         let runs = |name: &String| {
             !ignored.contains(name)
                 && !package.without.iter().any(|left_out| name.contains(left_out))
-                && (!at.is_of_program || package.of_program.contains(&&**name))
+                && (!at.is_of_program
+                    || package.of_program.iter().any(|start| name.starts_with(start)))
         };
         for name in list(&[])? {
             if runs(&name) {

@@ -128,6 +128,9 @@ fn the_first_source_of_events_that_is_complete_is_chosen() {
         }
         assert_eq!(Evidence::from_topics(&log.open().1), source);
     }
+    let sources = [Evidence::Recorded, Evidence::Scenes, Evidence::Images, Evidence::Laser];
+    assert_eq!(sources.map(Evidence::option), ["recorded", "scenes", "images", "laser"]);
+    assert_eq!(sources.map(Evidence::name), ["recorded", "scenes", "pictures", "laser"]);
 }
 
 #[test]

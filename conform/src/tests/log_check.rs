@@ -1,6 +1,7 @@
 //! What a check takes from the log, from its topic map, and from what is asked.
 
 use std::{
+    collections::BTreeSet,
     f64::consts::{FRAC_PI_2, PI},
     sync::atomic::{AtomicU64, Ordering},
 };
@@ -14,39 +15,40 @@ use toposlam_logs::{
     writer::LogWriter,
 };
 use toposlam_model::{
-    aid::{AidKind, markers::MOVABLE},
+    aid::{AidKind, Places, State, markers::MOVABLE},
     driving::pose::Pose,
     embedded_graph::EmbeddedGraph,
     enumerate::Watch,
     format::named_world::NamedWorld,
     marker::{MarkerKind, NoMarker, Undirected},
+    trace::AlgorithmCase,
 };
 use toposlam_simulator::{Corridor, CorridorPlan, LaserScanner, ScannerParams};
 use toposlam_vision::{geometry, laser::params::LaserParams};
 
 use super::*;
 use crate::{
-    AddedMarker, CheckError, CheckedLog, DoorChooser, Evidence, LogCheck, LogSource,
-    MarkerPlaceError, RobotStart,
+    AddedMarker, CheckError, CheckedLog, DoorChooser, Evidence, Known, LogCheck, LogSource,
+    MarkerPlaceError, RobotStart, known_world::MarkerStart,
 };
 
 /// A log, and what a check asks of it.
-struct Question<'q> {
-    log: &'q [u8],
-    head: messages::Run,
+pub(super) struct Question<'q> {
+    pub(super) log: &'q [u8],
+    pub(super) head: messages::Run,
     /// Tables of a topic map, besides the topics of the log.
-    mapped: &'q str,
-    evidence: Evidence,
-    corners: bool,
-    world: Option<&'q NamedWorld>,
-    start: RobotStart<'q>,
-    aid: Option<AidKind>,
-    assumes_marker: bool,
-    doors: DoorChooser,
+    pub(super) mapped: &'q str,
+    pub(super) evidence: Evidence,
+    pub(super) corners: bool,
+    pub(super) world: Option<&'q NamedWorld>,
+    pub(super) start: RobotStart<'q>,
+    pub(super) aid: Option<AidKind>,
+    pub(super) assumes_marker: bool,
+    pub(super) doors: DoorChooser,
 }
 
 impl<'q> Question<'q> {
-    fn new(log: &'q [u8], evidence: Evidence) -> Self {
+    pub(super) fn new(log: &'q [u8], evidence: Evidence) -> Self {
         Self {
             log,
             head: messages::Run::default(),
@@ -61,7 +63,7 @@ impl<'q> Question<'q> {
         }
     }
 
-    fn checked(&self) -> Result<CheckedLog, CheckError> {
+    pub(super) fn checked(&self) -> Result<CheckedLog, CheckError> {
         let log = reader::Log::of_bytes(self.log.to_vec()).unwrap();
         let topics = match self.mapped {
             "" => TopicMap::unambiguous(&log),
@@ -88,7 +90,7 @@ impl<'q> Question<'q> {
 
 /// Lines of recorded events: the number of doors, the door by which the robot leaves, and the door along which the marker
 /// points.
-fn lines(visits: &[(u32, u32, Option<u32>)]) -> Vec<u8> {
+pub(super) fn lines(visits: &[(u32, u32, Option<u32>)]) -> Vec<u8> {
     let line = |&(degree, door, marker): &(u32, u32, Option<u32>)| {
         let marker = marker.map_or(-1, i64::from);
         format!(
@@ -141,12 +143,12 @@ const FORK: [([[f64; 2]; 2], f64); 4] = [
 ];
 
 /// The log of a robot that comes from the west and goes on to the east, past a tag at the fork that points south.
-fn past_fork() -> Vec<u8> {
+pub(super) fn past_fork() -> Vec<u8> {
     let tag = Odometry { position: [0.0, 0.2], heading: -FRAC_PI_2 };
     scanned(&FORK, &[[-10.0, 0.0], [10.0, 0.0]], Some(tag))
 }
 
-fn fork_world() -> NamedWorld {
+pub(super) fn fork_world() -> NamedWorld {
     let lists = [
         ("fork", vec!["west", "east", "bend"]),
         ("west", vec!["fork"]),
@@ -284,6 +286,60 @@ fn a_robot_starts_where_the_log_the_question_or_the_world_has_it() {
     assert_eq!(start(&here, RobotStart::Recorded), (text("v0:v3"), Some(true)));
     let elsewhere = messages::Run { world_hash: "0".to_owned(), ..here };
     assert_eq!(start(&elsewhere, RobotStart::Recorded), (text("v0:v1"), Some(false)));
+}
+
+/// What a complete run from the start has in the known world.
+#[test]
+fn a_known_world_expects_the_cases_and_shapes_of_a_run_in_it() {
+    let known = |world: &NamedWorld| {
+        let (aid, algorithm) = (Directional.into(), MappingAlgorithm::Algorithm1);
+        Known::new(world.clone(), world.start, (aid, MarkerStart::Robot), algorithm).unwrap().0
+    };
+    // One hallway: no hypothesis is raised, and none tested.
+    let line = NamedWorld::numbered("line", "", EmbeddedGraph::chain(1), Some(Dart(0)));
+    let ring = NamedWorld::numbered("ring", "", EmbeddedGraph::cycle(2), Some(Dart(0)));
+    let expected = [&line, &ring].map(|world| {
+        let known = known(world);
+        AlgorithmCase::ALL.map(|case| known.expects(case)).iter().filter(|&&is| is).count()
+    });
+    assert!(expected[0] > 0 && expected[0] < expected[1], "{expected:?}");
+    assert_eq!(known(&line).has_shape(JunctionShape([true; 4])), None);
+    assert!(!known(&line).expects_shape(JunctionShape([true; 4])));
+    let (plan, facing) = place_in("shape-6");
+    let world = NamedWorld::numbered("shape-6", "", plan.graph().clone(), Some(facing));
+    let with_plan = known(&NamedWorld { plan: Some((*plan).clone()), ..world });
+    let shapes: BTreeSet<_> = plan.graph().darts().map(|entry| plan.shape(entry)).collect();
+    for shape in
+        (0..16).map(|bits| JunctionShape([0, 1, 2, 3].map(|quarter| bits >> quarter & 1 == 1)))
+    {
+        assert_eq!(with_plan.has_shape(shape), Some(shapes.contains(&shape)), "{shape:?}");
+        // A run goes through each junction, and not by each entry.
+        assert!(!with_plan.expects_shape(shape) || shapes.contains(&shape));
+    }
+    assert!(with_plan.expects_shape(plan.shape(facing)));
+}
+
+#[test]
+fn a_map_is_the_known_world_if_it_is_that_of_one_of_its_starts() {
+    let ring = EmbeddedGraph::cycle(3);
+    let states = vec![GraphWorld::new(&ring, Dart(2)).state()];
+    let states = states
+        .into_iter()
+        .map(|State { pose, placed }| State { pose, placed: Places::from_elem(Some(placed), 1) });
+    let known = KnownWorld { graph: ring.clone(), states: states.collect() };
+    for aid in [AidKind::from(Directional), AidKind::from(MOVABLE)] {
+        assert!(known.has(&ring, aid));
+        assert!(!known.has(&EmbeddedGraph::cycle(4), aid));
+        assert!(!known.has(&EmbeddedGraph::chain(3), aid));
+    }
+}
+
+/// Where the robot and its marker may both be anywhere, a large world has too many states.
+#[test]
+fn a_large_world_in_which_the_marker_may_be_anywhere_is_not_followed() {
+    let ring = NamedWorld::numbered("ring", "", EmbeddedGraph::cycle(513), None);
+    let lies = (AidKind::from(Directional), MarkerStart::Anywhere);
+    assert!(Known::new(ring, None, lies, MappingAlgorithm::Algorithm1).is_none());
 }
 
 /// The marker of a laser log: assumed at a place or at the first junction, or a tag that was seen.
