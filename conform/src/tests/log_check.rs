@@ -11,7 +11,7 @@ use toposlam_logs::{
     reader,
     recorder::{ODOM, SCAN},
     standard::{Header, LaserScanMessage, OdometryMessage, PoseMessage, PoseStamped, Twist},
-    topic_map::TopicMap,
+    topic_map::{Role, TopicMap},
     writer::LogWriter,
 };
 use toposlam_model::{
@@ -426,4 +426,16 @@ fn each_scan_is_done_once_and_a_hall_is_where_free_space_is_wider_than_a_corrido
     assert_eq!((run.scans, done.0.into_inner()), (176, 175));
     let in_hall = run.wide.iter().filter(|place| place.x > 1.0).count();
     assert!(in_hall > 30 && in_hall == run.wide.len(), "{:?}", run.wide);
+}
+
+/// Where a tag was seen, and which scan is where, without odometry.
+#[test]
+fn without_odometry_each_scan_has_a_place_by_the_walls() {
+    let log = reader::Log::of_bytes(scanned(&FORK, &[[-4.0, 0.0], [4.0, 0.0]], None)).unwrap();
+    let topics = TopicMap::unambiguous(&log).only(&[Role::Scan]);
+    let run = extract(&log, &topics, &ExtractConfig::new(Evidence::Laser), &()).unwrap();
+    assert_eq!(run.matched_scans, Some(MatchedScans { placed: 16, unmatched: 0 }));
+    assert!(run.poses.keys().eq(&run.scan_messages));
+    let ends = [0, 15].map(|scan| run.poses[&run.scan_messages[scan]]);
+    assert!((ends[0].distance(&ends[1]) - 7.5).abs() < 0.3, "{ends:?}");
 }

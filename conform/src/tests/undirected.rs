@@ -2,7 +2,13 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use toposlam_model::{enumerate::Watch, folding::SmallestWorld, marker::Undirected};
+use toposlam_model::{
+    aid::AidKind,
+    enumerate::Watch,
+    folding::SmallestWorld,
+    format::{named_world::NamedWorld, world_file},
+    marker::{NoMarker, Undirected},
+};
 
 use super::*;
 use crate::impossible::Impossibility;
@@ -68,6 +74,45 @@ fn a_marker_that_is_seen_at_two_different_junctions_fits_no_world() {
     let found = divergence(&walk(&visits), &config());
     let DivergenceCause::NoWorld { why, .. } = found.cause else { panic!("{found:?}") };
     assert_eq!((found.event, why), (8, Impossibility::OnePlace));
+}
+
+/// Figure 1: no robot with an undirected marker can tell these worlds apart.
+#[test]
+fn another_world_explains_a_walk_in_figure_1_unless_it_diverges() {
+    let text = include_bytes!("../../../worlds/figure-1a.toml");
+    let world = world_file::read(text).unwrap();
+    let (graph, start) = (&world.graph, world.start.unwrap());
+    let mut robot = GraphWorld::with_aid(graph, AidKind::from(Undirected), start);
+    let states = vec![robot.state()];
+    let mut kinds = vec![CheckedKind::from(robot.sensed())];
+    for door in [1, 1, 1, 0, 1, 1, 2, 1, 1, 1, 2, 2, 1, 1, 2, 1, 0, 1, 1, 1] {
+        let door = door % robot.sensed().degree;
+        robot.traverse(Door(door)).unwrap();
+        kinds.extend([bare_door(door), CheckedKind::from(robot.sensed())]);
+    }
+    let known = Some(KnownWorld { graph: graph.clone(), states });
+    let in_world = ConformConfig { world: known, ..config() };
+    let judgement = judged(&bare_events(kinds.clone()), &in_world);
+    let twin = TwinWorld::find(&judgement, &in_world).unwrap();
+    let figures = (twin.first_figure, twin.figure);
+    assert_eq!(figures, (Some("Figure 1(a)"), Some("Figure 1(b)")));
+    let mut diverged = judgement.clone();
+    let cause = DivergenceCause::TurnedBack;
+    let found = Divergence { event: 2, fault: cause.fault(), cause };
+    diverged.contradiction = Some((found.clone(), Unproved::Scans));
+    assert!(TwinWorld::find(&diverged, &in_world).is_none());
+    diverged.contradiction = None;
+    diverged.divergence = Some(found);
+    assert!(TwinWorld::find(&diverged, &in_world).is_none());
+    // A robot without a marker has too many.
+    let unmarked = ConformConfig { aid: NoMarker.into(), ..in_world };
+    assert!(TwinWorld::find(&judgement, &unmarked).is_none());
+    // So has a smallest world that is found to be this one.
+    let mut found = judged(&bare_events(kinds), &config());
+    let graph = NamedWorld::discovered("", "", graph, start).graph;
+    found.smallest = Some(SmallestWorld::World { graph, marker: Some(Dart(0)), limit: None });
+    let twin = TwinWorld::find(&found, &config()).unwrap();
+    assert_eq!((twin.first_figure, twin.figure), figures);
 }
 
 /// Stops the work when it has been asked so often.
