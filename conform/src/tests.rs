@@ -43,6 +43,7 @@ mod report;
 mod tolerance;
 mod undirected;
 mod verdicts;
+mod words;
 
 const DARTS: usize = 400;
 const FOLDING: MappingAlgorithm = MappingAlgorithm::Folding;
