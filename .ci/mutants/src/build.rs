@@ -50,16 +50,18 @@ struct File {
     placed: Vec<Placed>,
 }
 
-/// Compiles the mutants of a package, and its tests.
+/// Compiles mutants of a package, by their indices, and its tests.
 ///
 /// # Errors
 ///
 /// Returns an error if the copy cannot be written, or does not compile without mutants.
-pub fn build(package: &Package) -> Result<Build, Box<dyn Error>> {
+pub fn build(package: &Package, selected: &[usize]) -> Result<Build, Box<dyn Error>> {
     let Package { name, folder, tests, .. } = package;
     let copy = PathBuf::from(format!("target/mutants/{name}"));
     copy_repository(folder, &copy)?;
     let (mut files, mut mutants) = find_mutants(package)?;
+    let mut is_selected = vec![false; mutants.len()];
+    selected.iter().for_each(|&mutant| is_selected[mutant] = true);
     let module = include_str!("switch.rs")
         .replace("[AtomicBool; COUNT]", &format!("[AtomicBool; {}]", mutants.len()));
     let module = module.replace("; COUNT]", &format!("; {}]", mutants.len()));
@@ -68,7 +70,7 @@ pub fn build(package: &Package) -> Result<Build, Box<dyn Error>> {
         for file in &mut files {
             let number = |site: usize, change: usize| {
                 let number = file.first[site] + change;
-                mutants[number].compiles.then_some(number as u32)
+                (is_selected[number] && mutants[number].compiles).then_some(number as u32)
             };
             let (mut text, placed) = switched::switched(&file.source, &file.sites, number);
             if file.path == format!("{folder}/src/lib.rs") {

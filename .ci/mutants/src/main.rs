@@ -15,7 +15,8 @@ use build::Mutant;
 use tests::Outcome;
 
 const HELP: &str = "\
-Usage: .ci/mutants/run PACKAGE [TEXT]... [--since BASE] [--jobs J] [--list]
+Usage: .ci/mutants/run PACKAGE [TEXT]... [--since BASE] [--test TEXT] [--jobs J]
+                       [--list]
 
 Makes one small change after another in a package, and runs the tests that reach
 it. A test that fails, or that does not end, has caught the mutant.
@@ -26,6 +27,7 @@ it. A test that fails, or that does not end, has caught the mutant.
   TEXT          only the mutants whose names contain one of these texts, such as
                 vision/src/laser/
   --since BASE  only the mutants in files that have changed since commit BASE
+  --test TEXT   only the tests whose names contain this text, or one of several
   --jobs J      mutants tested at the same time (default: 2)
   --list        print the mutants, and run nothing
 
@@ -130,6 +132,8 @@ struct Options {
     package: &'static Package,
     texts: Vec<String>,
     since: Option<String>,
+    /// Tests with none of these texts in their names are left out, if there are some.
+    tests: Vec<String>,
     jobs: usize,
     only_lists: bool,
 }
@@ -151,12 +155,13 @@ fn main() -> ExitCode {
 }
 
 fn options(arguments: &[String]) -> Result<Options, Box<dyn Error>> {
-    let (mut package, mut texts, mut since, mut jobs, mut only_lists) =
-        (None, Vec::new(), None, 2, false);
+    let (mut package, mut texts, mut since, mut tests, mut jobs, mut only_lists) =
+        (None, Vec::new(), None, Vec::new(), 2, false);
     let mut arguments = arguments.iter();
     while let Some(argument) = arguments.next() {
         match &**argument {
             "--since" => since = Some(arguments.next().ok_or("--since needs a commit")?.clone()),
+            "--test" => tests.push(arguments.next().ok_or("--test needs a text")?.clone()),
             "--jobs" => jobs = arguments.next().ok_or("--jobs needs a number")?.parse()?,
             "--list" => only_lists = true,
             option if option.starts_with('-') => {
@@ -173,6 +178,7 @@ fn options(arguments: &[String]) -> Result<Options, Box<dyn Error>> {
         package: package.ok_or("which package? see --help")?,
         texts,
         since,
+        tests,
         jobs,
         only_lists,
     })
@@ -200,11 +206,11 @@ fn examine(options: &Options) -> Result<bool, Box<dyn Error>> {
         selected.iter().for_each(|&mutant| println!("{}", mutants[mutant].name()));
         return Ok(true);
     }
-    let built = build::build(package)?;
+    let built = build::build(package, &selected)?;
     let compiled: Vec<usize> =
         selected.iter().copied().filter(|&mutant| built.mutants[mutant].compiles).collect();
     eprintln!("{} mutants, of which {} compile", selected.len(), compiled.len());
-    let tests = tests::record(&built.programs, package, options.jobs)?;
+    let tests = tests::record(&built.programs, options)?;
     let is_done = |done: usize, mutant: usize, outcome: Outcome| {
         let mutant = &built.mutants[mutant];
         if outcome.survives() && !listed.contains(&mutant.name()) {
