@@ -126,7 +126,7 @@ fn an_event_has_in_json_what_was_perceived_taken_or_done() {
 }
 
 #[test]
-fn a_verdict_has_a_name_and_is_said_in_words() {
+fn a_verdict_has_a_name_and_words() {
     use ConformVerdict::*;
     for (verdict, name, words) in [
         (Conforms, "conforms", "conforms"),

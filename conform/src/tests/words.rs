@@ -47,30 +47,33 @@ fn in_some_world() -> Option<WorldFact> {
 #[test]
 fn the_visits_of_a_laser_log_that_are_not_certain_are_remarked() {
     use VisitFit::{Anything, Contradiction, Fits, NotKnown, UnseenWay};
-    let said =
+    let remarks_of =
         |visits: PossibleVisits| words::remarks(&facts(|facts| facts.possible = Some(visits)));
     let one = "1 of 3 visits not certain";
     let chosen = "visits of one place are chosen from one by one";
     let none: [&str; 0] = [];
-    assert_eq!(said(visits(3, 3, Fits)), none);
-    assert_eq!(said(visits(3, 3, NotKnown)), none);
+    assert_eq!(remarks_of(visits(3, 3, Fits)), none);
+    assert_eq!(remarks_of(visits(3, 3, NotKnown)), none);
     let fits = "a choice of their percepts fits some world";
-    assert_eq!(said(visits(3, 2, Fits)), [format!("{one}; {fits}; {chosen}")]);
+    assert_eq!(remarks_of(visits(3, 2, Fits)), [format!("{one}; {fits}; {chosen}")]);
     let little = "which says little: less than two thirds are certain";
     assert_eq!(
-        said(visits(3, 1, Fits)),
+        remarks_of(visits(3, 1, Fits)),
         [format!("2 of 3 visits not certain; {fits}, {little}; {chosen}")]
     );
-    assert_eq!(said(visits(1, 0, Fits)), [format!("1 of 1 visits not certain; {fits}, {little}")]);
+    assert_eq!(
+        remarks_of(visits(1, 0, Fits)),
+        [format!("1 of 1 visits not certain; {fits}, {little}")]
+    );
     let not_known = "whether their percepts fit some world is not known";
-    assert_eq!(said(visits(3, 2, NotKnown)), [format!("{one}; {not_known}")]);
+    assert_eq!(remarks_of(visits(3, 2, NotKnown)), [format!("{one}; {not_known}")]);
     let no_world = "no world fits any choice of their percepts";
-    assert_eq!(said(visits(3, 3, Contradiction)), [no_world]);
-    assert_eq!(said(visits(3, 2, Contradiction)), [format!("{one}; {no_world}; {chosen}")]);
+    assert_eq!(remarks_of(visits(3, 3, Contradiction)), [no_world]);
+    assert_eq!(remarks_of(visits(3, 2, Contradiction)), [format!("{one}; {no_world}; {chosen}")]);
     let anything = "any visits would fit: there is no marker, and the robot never turned back";
-    assert_eq!(said(visits(3, 3, Anything)), [anything]);
+    assert_eq!(remarks_of(visits(3, 3, Anything)), [anything]);
     let unseen = "the robot drove where its scanner did not look, and may have passed more there";
-    assert_eq!(said(visits(3, 3, UnseenWay)), [unseen]);
+    assert_eq!(remarks_of(visits(3, 3, UnseenWay)), [unseen]);
     // A known world.
     let in_world = |visits, decided: &[usize]| {
         let mut visits: PossibleVisits = visits;
@@ -93,7 +96,7 @@ fn the_visits_of_a_laser_log_that_are_not_certain_are_remarked() {
 
 #[test]
 fn the_doors_of_an_algorithm_at_visits_that_are_not_certain_are_remarked() {
-    let said = |algorithm| {
+    let remarks_of = |algorithm| {
         let mut visits = visits(3, 2, VisitFit::Fits);
         visits.algorithm = algorithm;
         let report = report(|report| {
@@ -116,13 +119,13 @@ fn the_doors_of_an_algorithm_at_visits_that_are_not_certain_are_remarked() {
         ),
         (None, "but the doors of the algorithm are not compared with it"),
     ] {
-        assert_eq!(said(algorithm), [format!("{start}{doors}{end}")]);
+        assert_eq!(remarks_of(algorithm), [format!("{start}{doors}{end}")]);
     }
 }
 
 #[test]
 fn what_does_not_fit_and_accuses_nobody_is_remarked_with_its_reason() {
-    let said = |cause: DivergenceCause, why| {
+    let remarks_of = |cause: DivergenceCause, why| {
         let fit = VisitFit::Contradiction;
         words::remarks(&facts(|facts| {
             facts.contradiction = unproved(cause, why);
@@ -142,9 +145,9 @@ fn what_does_not_fit_and_accuses_nobody_is_remarked_with_its_reason() {
             "the log records that the robot turned back at an obstacle, which inferred events do not show",
         ),
     ] {
-        assert_eq!(said(DivergenceCause::TurnedBack, why), [format!("{start}{because}")]);
+        assert_eq!(remarks_of(DivergenceCause::TurnedBack, why), [format!("{start}{because}")]);
     }
-    let [_, chosen] = &said(DivergenceCause::Driven, Unproved::Poses)[..] else { panic!() };
+    let [_, chosen] = &remarks_of(DivergenceCause::Driven, Unproved::Poses)[..] else { panic!() };
     assert_eq!(chosen, "visits of one place are chosen from one by one");
     let faults = FaultClass::ALL.map(words::fault);
     assert_eq!(
@@ -160,7 +163,7 @@ fn what_does_not_fit_and_accuses_nobody_is_remarked_with_its_reason() {
 
 #[test]
 fn a_building_that_is_no_network_of_corridors_is_remarked() {
-    let said = |network| {
+    let remarks_of = |network| {
         let mut visits = visits(3, 3, VisitFit::Fits);
         visits = visits.in_building(network);
         words::remarks(&facts(|facts| facts.possible = Some(visits)))
@@ -168,10 +171,10 @@ fn a_building_that_is_no_network_of_corridors_is_remarked() {
     let wide = NetworkFit { wide: 0.394, many_doors: 4, fault: Some(NetworkFault::Wide) };
     let start = "this building is not a network of corridors: ";
     let part = "on 39 % of the robot's way free space is wider than a corridor";
-    assert_eq!(said(wide), [format!("{start}{part}")]);
+    assert_eq!(remarks_of(wide), [format!("{start}{part}")]);
     let doors = "4 visits may be of places with more doors than a junction of corridors has";
     let many = NetworkFit { fault: Some(NetworkFault::ManyDoors), ..wide };
-    assert_eq!(said(many), [format!("{start}{doors}")]);
+    assert_eq!(remarks_of(many), [format!("{start}{doors}")]);
 }
 
 #[test]
@@ -267,28 +270,29 @@ fn a_log_without_a_head_that_diverges_at_its_first_event_may_begin_elsewhere() {
 
 #[test]
 fn the_scanner_the_odometry_and_the_marker_of_a_laser_log_are_facts() {
-    let said = |name: &str, change: &dyn Fn(&mut Facts)| {
+    let remarks_of = |name: &str, change: &dyn Fn(&mut Facts)| {
         let found = words::facts(&facts(|facts| {
             (facts.evidence, facts.field_of_view) = (Evidence::Laser, 360_f64.to_radians());
             change(facts);
         }));
         found.into_iter().find(|(fact, _)| *fact == name).map(|(_, text)| text)
     };
-    let field = |degrees: f64| said("scanner", &|facts| facts.field_of_view = degrees.to_radians());
+    let field =
+        |degrees: f64| remarks_of("scanner", &|facts| facts.field_of_view = degrees.to_radians());
     let narrow = "180 degrees: arms that point back beside the robot's way are hardly seen";
     assert_eq!(field(180.0).as_deref(), Some(narrow));
     assert_eq!((field(270.0), field(360.0)), (None, None));
-    let drift = said("odometry", &|facts| facts.drift = Some(1.5_f64.to_radians()));
+    let drift = remarks_of("odometry", &|facts| facts.drift = Some(1.5_f64.to_radians()));
     let matched = "its heading drifts by 1.5 degrees in 10 m: scans are matched with the walls of earlier ones";
     assert_eq!(drift.as_deref(), Some(matched));
     let unmatched = |unmatched| {
         let matched = MatchedScans { placed: 5, unmatched };
-        said("odometry", &|facts| facts.matched_scans = Some(matched)).unwrap()
+        remarks_of("odometry", &|facts| facts.matched_scans = Some(matched)).unwrap()
     };
     let placed = "not recorded: scans are placed by the walls of earlier ones, and lengths along corridors are not certain";
     assert_eq!(unmatched(0), placed);
     assert_eq!(unmatched(2), format!("{placed}; 2 scans that match nothing are skipped"));
-    let marker = |added| said("marker", &|facts| facts.added_marker = Some(added)).unwrap();
+    let marker = |added| remarks_of("marker", &|facts| facts.added_marker = Some(added)).unwrap();
     let assumed = |heading| AddedMarker::Assumed { position: [1.0, -2.0], heading, seen: 3 };
     let place = "assumed, not in the log: at x 1.0 m, y -2.0 m of odometry";
     assert_eq!(marker(assumed(None)), format!("{place}; seen at 3 visits"));
@@ -301,7 +305,9 @@ fn the_scanner_the_odometry_and_the_marker_of_a_laser_log_are_facts() {
         "a fiducial with 4 sightings, 1 of them at no junction that was visited"
     );
     let lengths = |moves, measured, compared| {
-        said("lengths", &|facts| facts.lengths = MeasuredHallways { moves, measured, compared })
+        remarks_of("lengths", &|facts| {
+            facts.lengths = MeasuredHallways { moves, measured, compared }
+        })
     };
     assert_eq!(lengths(0, 0, 0), None);
     let none = "not compared: no odometry between the junctions";
