@@ -24,12 +24,12 @@ use toposlam_model::{
     trace::AlgorithmCase,
 };
 use toposlam_simulator::{Corridor, CorridorPlan, LaserScanner, ScannerParams};
-use toposlam_vision::{geometry, laser::params::LaserParams};
+use toposlam_vision::{geometry, laser::params::LaserParams, visits::VisitPercept};
 
 use super::*;
 use crate::{
     AddedMarker, CheckError, CheckedLog, DoorChooser, Evidence, Known, LogCheck, LogSource,
-    MarkerPlaceError, RobotStart, known_world::MarkerStart,
+    MarkerPlaceError, RobotStart, VisitedJunction, known_world::MarkerStart,
 };
 
 /// A log, and what a check asks of it.
@@ -438,4 +438,30 @@ fn without_odometry_each_scan_has_a_place_by_the_walls() {
     assert!(run.poses.keys().eq(&run.scan_messages));
     let ends = [0, 15].map(|scan| run.poses[&run.scan_messages[scan]]);
     assert!((ends[0].distance(&ends[1]) - 7.5).abs() < 0.3, "{ends:?}");
+}
+
+/// By what was driven or is seen to end: an arm that the robot only saw may be none.
+#[test]
+fn an_arm_is_certain_where_it_was_driven_and_possible_where_it_was_seen() {
+    let driven = |way: &[[f64; 2]], rounds: usize| {
+        let log = reader::Log::of_bytes(scanned(&FORK, way, None)).unwrap();
+        let topics = TopicMap::unambiguous(&log);
+        let mut config = ExtractConfig { driven: true, ..ExtractConfig::new(Evidence::Laser) };
+        config.laser.matching.rounds = rounds;
+        let driven = extract(&log, &topics, &config, &()).unwrap().driven?;
+        let alternatives = |seen: VisitedJunction| {
+            let percept = |one: VisitPercept| (one.degree, one.door);
+            seen.alternatives.into_iter().map(|one| one.map(percept)).collect::<Vec<_>>()
+        };
+        Some(driven.junctions.into_iter().map(alternatives).collect::<Vec<_>>())
+    };
+    let past = [[-10.0, 0.0], [10.0, 0.0]];
+    assert_eq!(driven(&past, 0), Some(vec![vec![None, Some((3, Some(1)))]]));
+    // From the west into the southern corridor, back, and on to the east.
+    let all = [[-10.0, 0.0], [0.0, 0.0], [0.0, -10.0], [0.0, 0.0], [10.0, 0.0]];
+    assert_eq!(driven(&all, 0), Some(vec![vec![Some((3, Some(2)))]; 2]));
+    // Where a log begins shows nothing of where the robot came from.
+    assert_eq!(driven(&[[-2.0, 0.0], [10.0, 0.0]], 0), Some(vec![vec![]]));
+    // Where odometry drifts, it is not known which passes are of one place.
+    assert_eq!(driven(&past, 1), None);
 }
