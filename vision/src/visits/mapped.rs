@@ -851,6 +851,8 @@ mod tests {
         let percept = |degree, door| Some(VisitPercept { degree, door: Some(door) });
         let all = [percept(2, 1), percept(3, 1), percept(4, 1)];
         assert_eq!(visits[0].alternatives(), all);
+        let arms = visits[0].arms.iter().map(|arm| arm.direction.to_degrees().round().abs());
+        assert_eq!(arms.collect::<Vec<_>>(), [180.0, 90.0, 0.0, 90.0]);
         assert_eq!(visits[0].doubt, Some(UndecidedCause::Unclear));
         // Bends are no vertices, or the way to it is too short.
         assert!(visits_by(along(&corner, &[])).is_empty());
@@ -885,5 +887,74 @@ mod tests {
         assert_eq!((at[0], at[at.len() - 1]), (-0.5, 1.0), "{at:?}");
         let here = statuses.iter().flatten().last().unwrap();
         assert_eq!((here.centre, here.arms.len()), (Point2::origin(), 3));
+    }
+
+    #[test]
+    fn a_junction_far_along_a_bent_way_is_entered_from_where_the_robot_came() {
+        let north = place(Point2::new(0.0, 20.0), 1.0, &[-FRAC_PI_2, FRAC_PI_2, 0.0]);
+        let way = along(&[[-12.0, 0.0], [0.0, 0.0], [0.0, 32.0]], &[fork_at(0.0), north]);
+        let visits = visits_by(way);
+        assert_eq!(percepts(&visits), [(3, Some(1)), (3, Some(1))]);
+        assert_eq!(visits[1].entry(), Some(-FRAC_PI_2));
+    }
+
+    #[test]
+    fn an_arm_that_shows_only_behind_a_junction_is_one_of_its_arms() {
+        let straight = place(Point2::origin(), 1.0, &[PI, 0.0]);
+        let views = eastwards().map(|robot| {
+            let seen = if robot.x < 1.6 { straight.clone() } else { fork_at(0.0) };
+            (robot, vec![seen], Vec::new())
+        });
+        let visits = visits_by(views);
+        assert_eq!(percepts(&visits), [(3, Some(2))]);
+        assert_eq!(visits[0].doubt, None);
+    }
+
+    #[test]
+    fn a_way_that_goes_straight_on_is_no_vertex_and_turning_back_there_is_turning_back() {
+        let straight = place(Point2::new(10.0, 0.0), 1.0, &[PI, 0.0]);
+        let alone = along(&[[-2.0, 0.0], [22.0, 0.0]], std::slice::from_ref(&straight));
+        assert!(visits_by(alone).is_empty());
+        let places = [fork_at(0.0), straight];
+        // Within it, behind it, and so near to the fork that it is noticed only there.
+        for turn in [10.0, 16.0, 2.0] {
+            let way = along(&[[-12.0, 0.0], [turn, 0.0], [-12.0, 0.0]], &places);
+            let visits = visits_by(way);
+            let turned: Vec<_> =
+                visits.iter().map(|visit| (visit.centre.x, visit.turned_back.len())).collect();
+            assert_eq!(turned, [(0.0, 0), (0.0, 1)], "{turn}");
+        }
+        // Twice, once within it.
+        let way = [[-12.0, 0.0], [16.0, 0.0], [10.0, 0.0], [32.0, 0.0]];
+        let visits = visits_by(along(&way, &[places[0].clone(), places[1].clone(), fork_at(24.0)]));
+        assert_eq!(percepts(&visits), [(3, Some(2)), (3, Some(2))]);
+        assert!(visits[1].turned_back.is_empty());
+    }
+
+    #[test]
+    fn a_corner_is_visited_where_a_log_ends_in_it_or_the_robot_turns_back() {
+        let corner = place(Point2::new(10.0, 0.0), 1.0, &[PI, FRAC_PI_2]);
+        let straight = place(Point2::new(10.0, 0.0), 1.0, &[PI, 0.0]);
+        let visits = |way: &[[f64; 2]], place: &SeenPlace| {
+            percepts(&Robot::with_corners().visits(along(way, std::slice::from_ref(place))))
+        };
+        let [begin, middle, end] = [[-2.0, 0.0], [10.0, 0.0], [10.0, 12.0]];
+        assert_eq!(visits(&[begin, middle], &corner), [(2, None)]);
+        assert_eq!(visits(&[begin, middle], &straight), []);
+        assert_eq!(visits(&[begin, middle, begin], &corner), [(2, Some(0))]);
+        // What it passes is visited once.
+        assert_eq!(visits(&[begin, middle, end], &corner), [(2, Some(1))]);
+        assert!(visits_by(along(&[begin, middle], &[corner])).is_empty());
+    }
+
+    #[test]
+    fn a_bend_within_a_junction_is_that_of_the_junction_and_one_far_from_it_is_a_corner() {
+        let lobby = place(Point2::origin(), 5.0, &[PI, FRAC_PI_2, 0.0]);
+        let robot = Robot::with_corners();
+        let within = robot.visits(along(&[[-16.0, 0.0], [0.0, 0.0], [0.0, 16.0]], &[lobby]));
+        assert_eq!(percepts(&within), [(3, Some(1))]);
+        let after = [[-12.0, 0.0], [12.0, 0.0], [12.0, 12.0]];
+        let visits = robot.visits(along(&after, &[fork_at(0.0)]));
+        assert_eq!(percepts(&visits), [(3, Some(2)), (2, Some(1))]);
     }
 }

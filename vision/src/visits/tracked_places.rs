@@ -308,6 +308,12 @@ mod tests {
         assert!(!shows(&[&fork]) && shows(&[&fork, &fork]));
         // Two of three views.
         assert!(shows(&[&fork, &fork, &corner]) && !shows(&[&fork, &corner, &corner]));
+        // Two of four are too few.
+        let mut usual = TrackedPlaces::new(VisitParams::DEFAULT);
+        for (way, view) in [&fork, &fork, &corner, &corner].into_iter().enumerate() {
+            usual.add(view.iter(), Point2::origin(), way as f64);
+        }
+        assert!(!usual.places[0].shows_meet(&usual.params));
         let places = after(&[&corner, &fork, &corner]);
         let parts = |arms: Vec<TrackedArm>| arms.iter().map(|arm| arm.part).collect::<Vec<_>>();
         assert_eq!(parts(places.places[0].arms_of_meet(&places.params)), [0.5; 3]);

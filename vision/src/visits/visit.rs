@@ -249,13 +249,22 @@ mod tests {
     #[test]
     fn a_hallway_turns_by_the_angle_from_where_a_robot_left_to_how_it_came_in() {
         let mut log = VisitLog::default();
-        // It left to the east, and comes in from the north: it drives south.
-        let mut second = visit(None);
-        (second.doubt, second.arms[0].direction) = (None, FRAC_PI_2);
-        log.push(Visit { doubt: None, ..visit(None) }, |_| panic!("there is no hallway before"));
+        // It left to the north, and comes in from the west: it drives east.
+        let mut first = Visit { doubt: None, ..visit(None) };
+        first.arms[1].certainty = Certainty::Certain;
+        first.exit = Some(VisitExit { at: (), direction: 1.5, off: None });
+        let second = Visit { doubt: None, ..visit(None) };
+        log.push(first, |_| panic!("there is no hallway before"));
         log.push(second, |before| Some(before.arms.len() as f64));
         let hallway = log.visits[1].hallway.unwrap();
         assert_eq!((hallway.length, hallway.turn), (4.0, Some(-FRAC_PI_2)));
+    }
+
+    #[test]
+    fn what_leaves_a_visit_undecided_has_a_name() {
+        use UndecidedCause::{Unclear, UnseenArm, UnseenWay};
+        let names = [Unclear, UnseenArm, UnseenWay].map(UndecidedCause::name);
+        assert_eq!(names, ["unclear", "unseen-arm", "unseen-way"]);
     }
 
     #[test]

@@ -117,11 +117,18 @@ mod tests {
     use super::*;
     use crate::place::ViewSector;
 
-    /// How often a way along x becomes too long in a direction in which a scanner that sees the half ahead of it does not look.
+    /// Where a way along a line becomes too long in a direction in which a scanner that sees the half ahead of it does not look.
     fn unseen(points: &[f64]) -> Vec<bool> {
+        let [along_x, along_y] = [0.0, FRAC_PI_2].map(|heading| unseen_along(points, heading));
+        assert_eq!(along_x, along_y);
+        along_x
+    }
+
+    /// The same along a way in this direction.
+    fn unseen_along(points: &[f64], heading: f64) -> Vec<bool> {
         let mut unseen = UnseenWay::default();
-        let view = |&x: &f64| PlaceView {
-            robot: Odometry { position: [x, 0.0], heading: 0.0 },
+        let view = |&along: &f64| PlaceView {
+            robot: Odometry { position: [along * heading.cos(), along * heading.sin()], heading },
             odometry_from_map: Isometry2::identity(),
             places: Vec::new(),
             possible_places: Vec::new(),
