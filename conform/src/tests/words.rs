@@ -28,20 +28,20 @@ fn visits(all: usize, certain: usize, fit: VisitFit) -> PossibleVisits {
     visits
 }
 
-fn unproved(cause: DivergenceCause, why: Unproved) -> Option<UnprovedDivergence> {
-    Some(UnprovedDivergence { event: 3, found: Some(bare_door(1)), cause, why })
+fn unproved(cause: DivergenceCause, why: Unproved) -> UnprovedDivergence {
+    UnprovedDivergence { event: 3, found: Some(bare_door(1)), cause, why }
 }
 
-fn in_some_world() -> Option<WorldFact> {
+fn in_some_world() -> WorldFact {
     let world = NamedWorld::numbered("ring", "", EmbeddedGraph::cycle(3), None);
-    Some(WorldFact {
+    WorldFact {
         name: "ring".to_owned(),
         start: None,
         candidates_at_start: 6,
         candidates_left: None,
         pose: None,
         world,
-    })
+    }
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn the_visits_of_a_laser_log_that_are_not_certain_are_remarked() {
         let mut visits: PossibleVisits = visits;
         visits.decided_by_world = decided.to_vec();
         let report = facts(|facts| {
-            (facts.possible, facts.world) = (Some(visits), in_some_world());
+            (facts.possible, facts.world) = (Some(visits), Some(in_some_world()));
         });
         words::remarks(&report)
     };
@@ -128,7 +128,7 @@ fn what_does_not_fit_and_accuses_nobody_is_remarked_with_its_reason() {
     let remarks_of = |cause: DivergenceCause, why| {
         let fit = VisitFit::Contradiction;
         words::remarks(&facts(|facts| {
-            facts.contradiction = unproved(cause, why);
+            facts.contradiction = Some(unproved(cause, why));
             facts.possible = Some(visits(3, 3, fit));
         }))
     };
@@ -215,7 +215,7 @@ fn the_events_that_fit_are_counted_unless_visits_are_not_certain() {
     assert_eq!(fits(3, &[], &certain(3, 3)).as_deref(), Some("All 3 events fit."));
     let contradicts = |facts: &mut Facts| {
         certain(3, 2)(facts);
-        facts.contradiction = unproved(DivergenceCause::TurnedBack, Unproved::Scans);
+        facts.contradiction = Some(unproved(DivergenceCause::TurnedBack, Unproved::Scans));
     };
     assert_eq!(fits(3, &[], &contradicts).as_deref(), Some("The events before event 3 fit."));
     let unrecognised = |facts: &mut Facts| facts.unrecognised = Some((1, UndecidedCause::Unclear));
@@ -255,10 +255,9 @@ fn a_log_without_a_head_that_diverges_at_its_first_event_may_begin_elsewhere() {
     let begins = |has_head, start: Option<&str>| {
         let report = facts(|facts| {
             facts.has_head = has_head;
-            let contradiction = unproved(DivergenceCause::TurnedBack, Unproved::Scans);
-            facts.contradiction =
-                contradiction.map(|found| UnprovedDivergence { event: 1, ..found });
-            facts.world = in_some_world();
+            let found = unproved(DivergenceCause::TurnedBack, Unproved::Scans);
+            facts.contradiction = Some(UnprovedDivergence { event: 1, ..found });
+            facts.world = Some(in_some_world());
             facts.world.as_mut().unwrap().start = start.map(str::to_owned);
         });
         let elsewhere = "the log may begin elsewhere: --start any tries every start";
