@@ -7,7 +7,10 @@ use super::{
     log_check::{Question, fork_world, lines, past_fork},
     *,
 };
-use crate::{CheckedLog, CoveredCase, DoorChooser, Evidence, LogReport, LogSource, RobotStart};
+use crate::{
+    CheckedLog, ConformReports, CoveredCase, DoorChooser, Evidence, LogReport, LogSource,
+    RobotStart, UnreadLog,
+};
 
 fn reported(checked: &CheckedLog, log: &[u8]) -> LogReport {
     let log = reader::Log::of_bytes(log.to_vec()).unwrap();
@@ -127,6 +130,27 @@ fn a_limit_and_a_departure_are_at_an_event() {
     let divergence = report.divergence.unwrap();
     assert_eq!(divergence.fault, FaultClass::Algorithm);
     assert_eq!(report.facts.doors.unwrap().departs_after, Some(divergence.event - 1));
+}
+
+#[test]
+fn the_json_of_logs_counts_their_faults_and_lists_the_cases_that_a_world_cannot_reach() {
+    let walk = lines(&[(2, 1, Some(0)), (3, 1, Some(0))]);
+    let checked = by_anyone(&walk, Evidence::Recorded).checked().unwrap();
+    let case = |case, reachable| CoveredCase { case, count: 0, reachable, expected: false };
+    let coverage = vec![case("here", Some(true)), case("nowhere", Some(false)), case("any", None)];
+    let diverged = LogReport { coverage, ..reported(&checked, &walk) };
+    let fault = diverged.divergence.as_ref().unwrap().fault;
+    let line = serde_json::to_value(&diverged).unwrap();
+    assert_eq!(line["unreachable"], serde_json::json!(["nowhere"]));
+    let unread = UnreadLog { log: "other".to_owned(), cause: "no log".to_owned() };
+    let logs = vec![diverged.clone(), LogReport::default(), diverged];
+    let reports = ConformReports { logs, unread: vec![unread], required: None };
+    let together = serde_json::to_value(reports.together(&[])).unwrap();
+    for class in FaultClass::ALL {
+        assert_eq!(together["classes"][class.name()], if class == fault { 2 } else { 0 });
+    }
+    let counts = ["logs", "diverged", "not_known", "conform", "unreadable"];
+    assert_eq!(counts.map(|name| together[name].as_u64().unwrap()), [4, 2, 1, 0, 1]);
 }
 
 #[test]
