@@ -132,6 +132,25 @@ fn a_limit_and_a_departure_are_at_an_event() {
     assert_eq!(report.facts.doors.unwrap().departs_after, Some(divergence.event - 1));
 }
 
+/// A walk that the world does not have, from one start or from none.
+#[test]
+fn a_proof_is_about_the_poses_in_which_the_robot_may_have_begun() {
+    let world = fork_world();
+    let walk = lines(&[(1, 0, None), (2, 1, None), (2, 1, None)]);
+    let proof = |start| {
+        let question =
+            Question { world: Some(&world), start, ..by_anyone(&walk, Evidence::Recorded) };
+        let checked = question.checked().unwrap();
+        let proofs = checked.proofs().unwrap();
+        assert!(proofs.iter().all(|proof| proof.to_string().contains("\nclaim diverges\n")));
+        proofs[0].to_string()
+    };
+    assert!(proof(RobotStart::Anywhere).contains("\nclaim diverges\nfrom any\n"));
+    let west = world.start_from_text("v1:v0").unwrap();
+    let from_west = format!("\nclaim diverges\nfrom {}\n", west.0);
+    assert!(proof(RobotStart::At("v1:v0")).contains(&from_west));
+}
+
 #[test]
 fn the_json_of_logs_counts_their_faults_and_lists_the_cases_that_a_world_cannot_reach() {
     let walk = lines(&[(2, 1, Some(0)), (3, 1, Some(0))]);

@@ -1,13 +1,15 @@
 //! The sentences of reports: those of laser logs, and others of which commands print few examples.
 
-use toposlam_model::{embedded_graph::EmbeddedGraph, format::named_world::NamedWorld};
+use toposlam_model::{
+    embedded_graph::EmbeddedGraph, format::named_world::NamedWorld, marker::MarkerKind,
+};
 use toposlam_vision::visits::network_fit::{NetworkFault, NetworkFit};
 
 use super::*;
 use crate::{
-    AddedMarker, Evidence, Facts, LogReport, MatchedScans, MeasuredHallways, PossibleVisits,
-    ReportedEvent, SkippedMessages, ToleratedQuirk, UnprovedDivergence, VisitFit, WorldFact,
-    scan_odometry::StampCounts, words,
+    AddedMarker, DivergenceReport, Evidence, Facts, LogReport, MatchedScans, MeasuredHallways,
+    PossibleVisits, ReportedEvent, SkippedMessages, ToleratedQuirk, TwinWorld, UnprovedDivergence,
+    VisitFit, WorldFact, scan_odometry::StampCounts, words,
 };
 
 /// A report of a robot that anyone drove, without facts.
@@ -315,4 +317,53 @@ fn the_scanner_the_odometry_and_the_marker_of_a_laser_log_are_facts() {
     assert_eq!(lengths(4, 3, 0).as_deref(), Some(once));
     let some = "2 of 4 moves compared with earlier ones";
     assert_eq!(lengths(4, 3, 2).as_deref(), Some(some));
+}
+
+#[test]
+fn a_number_that_was_expected_is_what_is_allowed_instead() {
+    let allowed = |cause: DivergenceCause| {
+        let (fault, found) = (cause.fault(), Some(bare_door(1)));
+        words::allowed(&DivergenceReport {
+            event: 3,
+            time: None,
+            message: None,
+            fault,
+            found,
+            allowed: Vec::new(),
+            allowed_total: 0,
+            cause,
+        })
+    };
+    assert_eq!(allowed(DivergenceCause::Number { expected: 2, recorded: 5 }), ["number 2"]);
+    assert_eq!(allowed(DivergenceCause::Moves { made: 7, recorded: 8 }), ["7 moves"]);
+    assert!(allowed(DivergenceCause::TurnedBack).is_empty());
+}
+
+#[test]
+fn a_twin_of_the_world_is_a_fact() {
+    let twin = |worlds, figure, may_be_more| {
+        let found = TwinWorld {
+            vertices: 5,
+            edges: 7,
+            genus: 0,
+            figure,
+            worlds,
+            world: in_some_world().world,
+            marker: MarkerKind::Undirected,
+            first_marker: Dart(0),
+            first_figure: None,
+            may_be_more,
+        };
+        let facts = words::facts(&facts(|facts| facts.twin = Some(found)));
+        facts.into_iter().find(|(fact, _)| *fact == "twin").unwrap().1
+    };
+    let start = "Another world explains this log as well, with 5 vertices, 7 edges and genus 0";
+    let end = "With an undirected marker no walk distinguishes it from the world above.";
+    assert_eq!(twin(1, None, false), format!("{start}. {end}"));
+    let drawn = twin(1, Some("Figure 1(b)"), false);
+    assert_eq!(drawn, format!("{start}: Figure 1(b) of the paper. {end}"));
+    let more = "There are 3 such worlds with as many edges.";
+    assert_eq!(twin(3, None, false), format!("{start}. {end} {more}"));
+    let at_least = "There are at least 3 such worlds with as many edges.";
+    assert_eq!(twin(3, None, true), format!("{start}. {end} {at_least}"));
 }
