@@ -166,6 +166,76 @@ fn rings_that_a_marker_does_not_distinguish_have_a_bisimulation() {
     }
 }
 
+/// A mark on an edge is seen by a robot that comes over it; other markers lie at their vertex.
+#[test]
+fn a_robot_that_turns_back_sees_the_same_vertex_and_another_edge() {
+    let seen = |sighting| {
+        let percept = Percept { degree: 2, sighting };
+        let alternative = Some(VisitAlternative { percept, door: Some(Door(1)) });
+        VisitSet::new([alternative], VisitWay::Through)
+    };
+    let proved = |again, marker| {
+        let visits = [seen(Sighting::Nothing), VisitSet::turned_back(), seen(again)];
+        Proof::of_impossible_visits(&visits, 2, marker).map(|_| ())
+    };
+    let possible = Err(NotProved::PossibleInSomeWorld);
+    assert_eq!(proved(Sighting::Passed, MarkerKind::UndirectedEdge), possible);
+    assert_eq!(proved(Sighting::PassedAlong, MarkerKind::DirectedEdge), possible);
+    assert_eq!(proved(Sighting::Pointing(Door(0)), Directional), Ok(()));
+    assert_eq!(proved(Sighting::Lying(1), Undirected), Ok(()));
+    assert_eq!(proved(Sighting::Nothing, Directional), possible);
+}
+
+#[test]
+fn a_robot_that_turns_back_twice_goes_on() {
+    let seen = |degree| {
+        let percept = Percept { degree, sighting: Sighting::Nothing };
+        let alternative = Some(VisitAlternative { percept, door: Some(Door(1)) });
+        VisitSet::new([alternative], VisitWay::Through)
+    };
+    let proved = |turns: usize| {
+        let turned = vec![VisitSet::turned_back(); turns];
+        let visits = [vec![seen(3)], turned, vec![seen(4)]].concat();
+        Proof::of_impossible_visits(&visits, turns + 1, NoMarker).map(|_| ())
+    };
+    let possible = Err(NotProved::PossibleInSomeWorld);
+    assert_eq!([0, 1, 2, 3].map(proved), [possible.clone(), Ok(()), possible, Ok(())]);
+}
+
+#[test]
+fn what_is_too_large_or_seen_of_another_aid_has_no_proof() {
+    let none = VisitSet::new([None], VisitWay::Through);
+    let proved = |count| {
+        let visits = vec![none.clone(); count];
+        Proof::of_impossible_visits(&visits, count, NoMarker).map(|_| ())
+    };
+    assert_eq!(proved(1000), Err(NotProved::PossibleInSomeWorld));
+    assert_eq!(proved(1001), Err(NotProved::TooManyChoices));
+    let seen = |degree| Percept { degree, sighting: Sighting::Nothing };
+    let large = Some(VisitAlternative { percept: seen(u32::MAX), door: Some(Door(0)) });
+    let visits = [VisitSet::new([large], VisitWay::Through)];
+    let proof = Proof::of_impossible_visits(&visits, 0, NoMarker).map(|_| ());
+    assert_eq!(proof, Err(NotProved::TooManyDarts));
+    let most = u32::try_from(crate::folding::MAX_DARTS).unwrap();
+    assert!(PerceivedWalk::new(&[seen(most)], &[]).is_ok());
+    assert_eq!(
+        PerceivedWalk::new(&[seen(most), seen(1)], &[Door(0)]),
+        Err(NotProved::TooManyDarts)
+    );
+    let sighting = Sighting::Lying(3);
+    let three = Trace::new([TraceEventKind::Percept(Percept { degree: 2, sighting })]).unwrap();
+    let run = PerceivedRun::new(MOVABLE.into(), &three);
+    assert_eq!(run, Err(NotProved::Sighting(sighting)));
+}
+
+#[test]
+fn a_vertex_has_a_door() {
+    let walk =
+        PerceivedWalk::new(&[Percept { degree: 0, sighting: Sighting::Nothing }], &[]).unwrap();
+    let contradiction = WalkContradiction::Percept(0);
+    assert_eq!(fold_walk(&walk, NoMarker).end, WalkEnd::Contradiction { visit: 0, contradiction });
+}
+
 #[test]
 fn a_walk_that_no_world_gives_is_cut_where_it_contradicts_itself() {
     let seen = |degree| Percept { degree, sighting: Sighting::Nothing };

@@ -167,6 +167,33 @@ fn turning_back_contradicts_a_vertex_that_has_another_degree_then() {
     assert_eq!(impossible(&[]), None);
 }
 
+/// By whatever door it left a dead end, it is at the fork before it again.
+#[test]
+fn a_door_that_is_not_known_is_any_door() {
+    let visit = |degree, door| VisitSet::new([unmarked(degree, door)], VisitWay::Through);
+    let open = |degree| {
+        let open = VisitAlternative { door: None, ..unmarked(degree, 0).unwrap() };
+        VisitSet::new([Some(open)], VisitWay::Through)
+    };
+    let found = |visits: &[VisitSet]| explanation(visits, false, 1000, &());
+    let impossible = Explanation::Impossible { visit: 2 };
+    assert_eq!(found(&[visit(3, 1), open(1), visit(4, 1)]), impossible);
+    assert!(matches!(found(&[visit(3, 1), open(1), visit(3, 1)]), Explanation::Explained(_)));
+    assert!(matches!(found(&[visit(3, 1), open(2), open(4)]), Explanation::Explained(_)));
+    // So it is to an algorithm.
+    let graph = lollipop();
+    let run = explored_by(MappingAlgorithm::Folding, &graph, Dart(0));
+    let open = |&percept: &Percept| {
+        VisitSet::new([Some(VisitAlternative { percept, door: None })], VisitWay::Through)
+    };
+    let visits: Vec<_> = run.percepts().iter().map(open).collect();
+    let by_folding = |watch: &dyn Watch| {
+        explain_by_algorithm(MappingAlgorithm::Folding, &visits, None, BOUNDS, watch)
+    };
+    assert!(matches!(by_folding(&()), Explanation::Explained(_)));
+    assert_eq!(by_folding(&StopAt::new(1)), Explanation::NotKnown);
+}
+
 #[test]
 fn a_search_that_is_stopped_or_reaches_its_bound_knows_nothing() {
     let visits = vec![VisitSet::new([unmarked(3, 1)], VisitWay::Through); 20];
@@ -373,6 +400,11 @@ proptest! {
         }
         if let Some((start, choice)) = found {
             prop_assert!(starts.contains(&start));
+            // A door is chosen where the alternative has none, and the robot leaves.
+            for (index, (visit, chosen)) in visits.iter().zip(&choice).enumerate() {
+                let is_open = visit.alternatives()[chosen.number].is_some_and(|it| it.door.is_none());
+                prop_assert_eq!(chosen.door.is_some(), is_open && index + 1 < visits.len());
+            }
             let chosen = visits.iter().zip(choice).map(|(visit, ChosenAlternative { number, door })| {
                 // At the last visit the robot stays; it could take any door.
                 let with_door = |known: VisitAlternative| VisitAlternative {
