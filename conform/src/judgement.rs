@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 use toposlam_logs::record::Arrival;
 use toposlam_model::{
@@ -76,8 +76,7 @@ pub struct RunCoverage {
     pub junctions: BTreeMap<JunctionShape, u64>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ConformVerdict {
     /// Everything fits.
     Conforms,
@@ -86,6 +85,12 @@ pub enum ConformVerdict {
     /// Everything fits, but the run or the search is not complete; or only what may be seen wrongly does not fit.
     #[default]
     NotKnown,
+}
+
+impl Serialize for ConformVerdict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.name().serialize(serializer)
+    }
 }
 
 impl ConformVerdict {

@@ -31,6 +31,8 @@ use super::*;
 
 mod extracted;
 mod folding;
+mod log_check;
+mod log_report;
 mod measured;
 mod moving;
 mod oracle;
@@ -39,7 +41,9 @@ mod possible;
 mod recovery;
 mod report;
 mod tolerance;
+mod undirected;
 mod verdicts;
+mod words;
 
 const DARTS: usize = 400;
 const FOLDING: MappingAlgorithm = MappingAlgorithm::Folding;

@@ -224,6 +224,67 @@ fn a_log_of_which_no_visit_is_decided_is_not_known_to_conform() {
 }
 
 #[test]
+fn visits_that_fit_decide_nothing_if_the_search_for_a_world_ends_early() {
+    let fork: Seen = (&[Some((3, 1))], false);
+    let (kinds, junctions) = events_of(&[fork, (&[Some((3, 0))], true), fork]);
+    let events = bare_events(kinds);
+    let verdict = |max_edges| {
+        let search = WorldSearch { max_edges, ..by_anyone().search };
+        let config = ConformConfig { search, aid: NoMarker.into(), ..by_anyone() };
+        let possible = PossibleVisits::judge(&events, &junctions, None, &config, &());
+        assert_eq!(possible.fit, VisitFit::Fits);
+        judged(&events, &config).with_possible(possible).verdict()
+    };
+    assert_eq!(verdict(None), ConformVerdict::Conforms);
+    assert_eq!(verdict(Some(1)), ConformVerdict::NotKnown);
+}
+
+#[test]
+fn visits_conform_if_a_choice_fits_that_the_driver_takes_and_most_of_them_are_certain() {
+    let (end, fork): (Seen, Seen) = ((&[Some((1, 0))], true), (&[Some((3, 1))], false));
+    let open: Seen = (&[Some((3, 1)), Some((4, 1)), None], false);
+    let judged = |visits: &[Seen], driver: RunDriver| {
+        let (kinds, junctions) = events_of(visits);
+        let states = anywhere(&ring(), &AidKind::from(NoMarker));
+        let world = Some(KnownWorld { graph: ring(), states });
+        let config = ConformConfig { world, aid: NoMarker.into(), ..driven(by_anyone(), driver) };
+        PossibleVisits::judge(&bare_events(kinds), &junctions, None, &config, &())
+    };
+    let certain = judged(&[end, fork], RunDriver::Anyone);
+    assert!(certain.conform() && certain.is_certain_enough());
+    // Two of three are enough, one of two is not.
+    assert!(judged(&[end, fork, open], RunDriver::Anyone).conform());
+    assert!(!judged(&[end, open], RunDriver::Anyone).conform());
+    assert!(!PossibleVisits::default().is_certain_enough());
+    let mut misfit = certain.clone();
+    misfit.fit = VisitFit::Contradiction;
+    assert!(!misfit.conform() && !certain.without_odometry(true).conform());
+    let mut by_algorithm = judged(&[end, fork], RunDriver::from(MappingAlgorithm::Folding));
+    for (fit, conforms) in
+        [(None, false), (Some(VisitFit::NotKnown), false), (Some(VisitFit::Fits), true)]
+    {
+        by_algorithm.algorithm = fit;
+        assert_eq!(by_algorithm.conform(), conforms, "{fit:?}");
+    }
+    // Without a marker none is seen.
+    let sets = judged(&[open], RunDriver::Anyone).sets;
+    assert_eq!(sets[0].alternatives().len(), 3);
+}
+
+/// The candidates of recorded events are the poses that fit them, and those of visits the states that fit their sets.
+#[test]
+fn a_junction_that_is_not_recognised_leaves_the_candidates_before_it() {
+    let unclear = CheckedKind::Undecided(UndecidedCause::Unclear);
+    let events = bare_events([bare_arrival(3, Sighting::Nothing), bare_door(1), unclear]);
+    let ring = ring();
+    let states = anywhere(&ring, &AidKind::from(NoMarker));
+    let world = Some(KnownWorld { graph: ring, states });
+    let found = judged(&events, &ConformConfig { world, aid: NoMarker.into(), ..by_anyone() });
+    // By any of its three doors.
+    assert_eq!((found.unrecognised, found.candidates()), (Some(2), 3));
+}
+
+#[test]
 fn without_a_world_a_marker_and_turning_back_any_visits_would_fit() {
     let fork: Seen = (&[Some((3, 1))], false);
     let back: Seen = (&[Some((3, 0))], true);

@@ -151,6 +151,27 @@ fn a_robot_turns_back_exactly_when_its_budget_of_moves_needs_it() {
     }
 }
 
+/// Where the robot must turn back, a door that is not that of the algorithm either is a fault of the algorithm.
+#[test]
+fn a_door_of_no_algorithm_is_no_way_back_that_was_missed() {
+    let place = place_in("building-12");
+    let (events, _) = log_with(&RunSettings::new(FOLDING, DARTS), &place, None, 1);
+    let mut too_late = 0;
+    for most in (4..30).step_by(3) {
+        let budget = RunBudget { moves: Some(most), ..RunBudget::default() };
+        let config = ConformConfig { budget, ..driven(at_place(&place), FOLDING) };
+        let is_back = |departure: &Departure| departure.allowed[0].purpose == StepPurpose::TurnBack;
+        let missed = departure(&events, &config).unwrap();
+        assert!(is_back(&missed), "{most}");
+        let Some(other) = with_other_door(&events, missed.event.id) else { continue };
+        let departed = departure(&other, &config).unwrap();
+        assert_eq!(departed.event.id, missed.event.id, "{most}");
+        assert!(!is_back(&departed), "{most}");
+        too_late += 1;
+    }
+    assert!(too_late > 3, "{too_late}");
+}
+
 #[test]
 fn a_robot_that_recovers_does_not_end_with_lengths_that_contradict_each_other() {
     let (place, config) = recovering_in("shape-8");
