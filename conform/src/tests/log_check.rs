@@ -45,6 +45,8 @@ pub(super) struct Question<'q> {
     pub(super) aid: Option<AidKind>,
     pub(super) assumes_marker: bool,
     pub(super) doors: DoorChooser,
+    /// Of the search for a world.
+    pub(super) steps: u64,
 }
 
 impl<'q> Question<'q> {
@@ -60,6 +62,7 @@ impl<'q> Question<'q> {
             aid: None,
             assumes_marker: false,
             doors: DoorChooser::Algorithm(None),
+            steps: 10_000,
         }
     }
 
@@ -79,7 +82,7 @@ impl<'q> Question<'q> {
             aid: self.aid,
             assumes_marker: self.assumes_marker,
             doors: self.doors,
-            search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 10_000 },
+            search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: self.steps },
             max_darts: None,
             quirks: &Quirks::default(),
         };

@@ -1,6 +1,6 @@
 //! Visits that scans or images do not decide: what fits, and that nobody is accused on a guess.
 
-use toposlam_logs::{messages, reader, recorder::Recorder};
+use toposlam_logs::{messages, recorder::Recorder};
 use toposlam_model::{
     aid::AidKind,
     driving::scene::{JunctionView, Place as SeenPlace, Scene},
@@ -16,10 +16,7 @@ use toposlam_vision::visits::{
     network_fit::{NetworkFault, NetworkFit},
 };
 
-use super::{
-    recovery::{check_log, check_of_scenes, head_of},
-    *,
-};
+use super::{log_check::Question, recovery::head_of, *};
 use crate::{
     DrivenVisits, PossibleVisits, UndecidedCause, Unproved, VisitFit, VisitedJunction,
     known_world::KnownWorld,
@@ -360,7 +357,7 @@ impl<O: RunObserver> RunObserver for Doubtful<O> {
 }
 
 /// The log of a run of the folding explorer in shape 8, and its head. The scenes near one of its visits are in doubt.
-fn doubtful_log(visit: usize) -> (reader::Log, messages::Run) {
+fn doubtful_log(visit: usize) -> (Vec<u8>, messages::Run) {
     let (plan, facing) = place_in("shape-8");
     let settings = RunSettings::new(MappingAlgorithm::Folding, DARTS);
     let head = head_of(&settings);
@@ -378,7 +375,7 @@ fn doubtful_log(visit: usize) -> (reader::Log, messages::Run) {
         (bytes, arrivals)
     };
     let arrivals = record(None).1;
-    (reader::Log::of_bytes(record(Some(arrivals[visit])).0).unwrap(), head)
+    (record(Some(arrivals[visit])).0, head)
 }
 
 #[test]
@@ -391,8 +388,9 @@ fn scenes_that_do_not_decide_a_visit_are_judged_as_sets() {
     for visit in 1..8 {
         let (log, head) = doubtful_log(visit);
         let judged = |world, doors| {
-            let check = LogCheck { doors, ..check_of_scenes(world) };
-            let checked = check_log(&check, &log, &head);
+            let scenes = Question::new(&log, Evidence::Scenes);
+            let checked =
+                Question { head: head.clone(), world, doors, ..scenes }.checked().unwrap();
             let possible = checked.judgement.possible.as_ref();
             let proofs = checked.proofs().unwrap();
             let is_fit =

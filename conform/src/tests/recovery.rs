@@ -1,8 +1,6 @@
 //! Logs of robots that recover, that got lost, and that turn back to keep within a budget.
 
-use std::sync::LazyLock;
-
-use toposlam_logs::{messages, reader, recorder::Recorder, topic_map::TopicMap};
+use toposlam_logs::{messages, recorder::Recorder};
 use toposlam_model::{
     aid::AidKind,
     format::named_world::NamedWorld,
@@ -10,9 +8,8 @@ use toposlam_model::{
     marker::{MarkerKind, NoMarker, Undirected},
     trace::{AllowedStep, Departure, MatchEnd, StepPurpose},
 };
-use toposlam_vision::laser::params::LaserParams;
 
-use super::*;
+use super::{log_check::Question, *};
 
 pub(super) fn recovering() -> MappingMethod {
     let noise = Some(log_noise());
@@ -196,29 +193,6 @@ pub(super) fn head_of(settings: &RunSettings) -> messages::Run {
     }
 }
 
-/// The check of the scenes of a log against the specification of its algorithm.
-pub(super) fn check_of_scenes(world: Option<&NamedWorld>) -> LogCheck<'_> {
-    static NONE: LazyLock<Quirks> = LazyLock::new(Quirks::default);
-    LogCheck {
-        evidence: Evidence::Scenes,
-        laser: LaserParams::default(),
-        world,
-        start: RobotStart::Recorded,
-        aid: None,
-        assumes_marker: false,
-        doors: DoorChooser::Algorithm(None),
-        search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 10_000 },
-        max_darts: None,
-        quirks: &NONE,
-    }
-}
-
-pub(super) fn check_log(check: &LogCheck, log: &reader::Log, head: &messages::Run) -> CheckedLog {
-    let topics = TopicMap::unambiguous(log);
-    let source = LogSource { log, topics: &topics, head: Some(head), sensor: None };
-    check.run(&source, &(), || {}).unwrap()
-}
-
 /// The judgements of the scenes of a run that recovers from a fault: with and without its world, with and without its
 /// algorithm, with a search that ends early, and with other markers.
 fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
@@ -233,7 +207,6 @@ fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
     let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
     run(plan, facing, robot.by_scene(), NoSensor, &mut recorder, &settings);
     recorder.finish().unwrap();
-    let log = reader::Log::of_bytes(log).unwrap();
     let world = NamedWorld::numbered(name, "", plan.graph().clone(), Some(facing));
     let anyone = DoorChooser::Anyone;
     let marked = [
@@ -243,14 +216,10 @@ fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
         (anyone, Some(Undirected)),
     ];
     let check = |(doors, marker): (_, Option<MarkerKind>), world, start, steps| {
-        let check = LogCheck {
-            start,
-            aid: marker.map(AidKind::from),
-            doors,
-            search: WorldSearch { class: Class::Multigraph, max_edges: None, steps },
-            ..check_of_scenes(world)
-        };
-        check_log(&check, &log, &head).judgement
+        let aid = marker.map(AidKind::from);
+        let head = head.clone();
+        let scenes = Question::new(&log, Evidence::Scenes);
+        Question { head, world, start, aid, doors, steps, ..scenes }.checked().unwrap().judgement
     };
     let (recorded, anywhere) = (RobotStart::Recorded, RobotStart::Anywhere);
     let ways = [
