@@ -233,6 +233,12 @@ impl LogCheck<'_> {
                 judgement.with_possible(possible)
             }
             ExtractedRun { unproved: Some(why), .. } => judgement.accusing_nobody(*why),
+            ExtractedRun { evidence: Evidence::Scenes | Evidence::Images, junctions, .. }
+                if judgement.is_open_at_visit() && !complete.has_left_between_doors() =>
+            {
+                let possible = PossibleVisits::judge(&complete, junctions, None, &config, watch);
+                judgement.with_possible(possible)
+            }
             _ => judgement,
         };
         let twin = TwinWorld::find(&judgement, &config);

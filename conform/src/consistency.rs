@@ -12,7 +12,7 @@ use toposlam_model::{
 
 use super::{
     divergence::{DivergenceCause, OFF},
-    events::{CheckedKind, RunEvents},
+    events::{CheckedEvent, CheckedKind, RunEvents},
     known_world::KnownWorld,
 };
 
@@ -121,6 +121,13 @@ impl RunEvents {
         let made = trace.percepts().len() - 1 - trace.lost().len() + sent as usize;
         let recorded = self.end.as_ref()?.moves;
         (made as u64 != recorded).then_some(DivergenceCause::Moves { made, recorded })
+    }
+
+    /// Whether the robot left a place in a direction that is none of its doors.
+    pub(super) fn has_left_between_doors(&self) -> bool {
+        let is_off =
+            |event: &CheckedEvent| matches!(event.kind, CheckedKind::LeftBetweenDoors { .. });
+        self.events.iter().any(is_off)
     }
 
     /// Whether the log has the whole run; if an algorithm drives, until its map is complete.

@@ -2,7 +2,7 @@
 
 use std::{f64::consts::FRAC_PI_6, fmt};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 use toposlam_model::{
     aid::{AidKind, Places},
@@ -24,8 +24,7 @@ pub struct Divergence {
     pub fault: FaultClass,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FaultClass {
     /// A wrong percept.
     Perception,
@@ -35,6 +34,12 @@ pub enum FaultClass {
     Algorithm,
     /// The log contradicts itself.
     Log,
+}
+
+impl Serialize for FaultClass {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.name().serialize(serializer)
+    }
 }
 
 impl FaultClass {

@@ -114,6 +114,20 @@ mod tests {
             arrival.entry = Some(0.0).filter(|_| index == 1);
         };
         assert_eq!(walks(&to, at_obstacle), [walk(2, 1, true)]);
+        // It comes to obstacles twice.
+        let twice = [(1, false), (1, false)];
+        let at_each = |_: usize, arrival: &mut Arrival| arrival.entry = Some(0.0);
+        assert_eq!(walks(&twice, at_each), [walk(1, 1, true)]);
+    }
+
+    #[test]
+    fn a_log_that_ends_on_the_way_has_the_walk_to_its_last_junction() {
+        let line = |degree: u32| {
+            format!("{{\"kind\":\"event\",\"degree\":{degree},\"door\":1,\"marker\":-1}}\n")
+        };
+        let log = Log::of_bytes([2, 3].map(line).concat().into_bytes()).unwrap();
+        let walks = earlier_walks(&log, &TopicMap::unambiguous(&log)).unwrap();
+        assert_eq!(walks, [walk(2, 3, false)]);
     }
 
     #[test]

@@ -283,7 +283,9 @@ pub fn extract(
         Evidence::Recorded => run.events.events,
         Evidence::Scenes | Evidence::Images => {
             run.unproved = Unproved::after_recovery(&run.events);
-            infer_events(&run.seen, marked)
+            let (events, junctions) = infer_visits(&run.seen, marked);
+            run.junctions = junctions;
+            events
         }
         Evidence::Laser => {
             let SensedLog { visits, driven, drift, network, wide } = scans.visits(driven, watch);
@@ -364,11 +366,16 @@ fn is_timed(entry: &Entry) -> bool {
 
 /// The events that are inferred from scenes.
 pub fn infer_events(seen: &[SensedScene], marked: bool) -> Vec<CheckedEvent> {
+    infer_visits(seen, marked).0
+}
+
+/// The same, and the junctions that the robot visited.
+fn infer_visits(seen: &[SensedScene], marked: bool) -> (Vec<CheckedEvent>, Vec<VisitedJunction>) {
     let mut visits = Visits::by_camera(marked);
     for SensedScene { source, scene, odometry } in seen {
         visits.add_frame(*source, scene, odometry);
     }
-    visit_events(visits.finish()).0
+    visit_events(visits.finish())
 }
 
 struct Extraction<'w, W> {

@@ -80,3 +80,28 @@ impl fmt::Display for FrameContents {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::driving::{odometry::Odometry, scene::Scene};
+
+    use super::*;
+    use crate::{EventSource, SensedScene};
+
+    #[test]
+    fn the_contents_of_images_are_counted_the_most_frequent_first() {
+        let contents = |dark: usize, unreadable| {
+            let scene = SensedScene {
+                source: EventSource::default(),
+                scene: Scene { place: Place::Unknown(Reason::TooDark), marker: None },
+                odometry: Odometry::default(),
+            };
+            let seen = vec![scene; dark];
+            let run = ExtractedRun { seen, unreadable, ..ExtractedRun::default() };
+            FrameContents::of_images(&run).to_string()
+        };
+        assert_eq!(contents(0, 0), "");
+        assert_eq!(contents(2, 0), ": 2 too dark");
+        assert_eq!(contents(2, 7), ": 7 not decodable, 2 too dark");
+    }
+}

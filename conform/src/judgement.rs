@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 use toposlam_logs::record::Arrival;
 use toposlam_model::{
@@ -41,7 +41,7 @@ pub struct Judgement {
     pub divergence: Option<Divergence>,
     /// A divergence that accuses nobody, and why.
     pub contradiction: Option<(Divergence, Unproved)>,
-    /// The visits of a laser log, which decide its verdict.
+    /// The visits as sets, which decide the verdict: of a log of scans, and of one of images if some are not certain.
     pub possible: Option<PossibleVisits>,
     /// The index of the first arrival after the robot got lost. Without a known world, the events from there on are
     /// compared with no world.
@@ -76,8 +76,7 @@ pub struct RunCoverage {
     pub junctions: BTreeMap<JunctionShape, u64>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ConformVerdict {
     /// Everything fits.
     Conforms,
@@ -86,6 +85,12 @@ pub enum ConformVerdict {
     /// Everything fits, but the run or the search is not complete; or only what may be seen wrongly does not fit.
     #[default]
     NotKnown,
+}
+
+impl Serialize for ConformVerdict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.name().serialize(serializer)
+    }
 }
 
 impl ConformVerdict {
@@ -436,7 +441,12 @@ impl Judgement {
         Ok(Self { events: self.events, unrecognised: Some(event), ..before })
     }
 
-    /// The judgement of visits that were inferred from scans. Where some are not certain, they are judged as sets.
+    /// Whether it ends at a visit that is not certain, and nothing diverged before.
+    pub(super) fn is_open_at_visit(&self) -> bool {
+        self.unrecognised.is_some() && self.divergence.is_none()
+    }
+
+    /// The judgement of visits that were inferred from scans or images. Where some are not certain, they are judged as sets.
     pub(super) fn with_possible(self, possible: PossibleVisits) -> Self {
         // Without the visits that are not certain, what the others show is no world.
         let is_certain = self.unrecognised.is_none() && !possible.is_unreliable();

@@ -1,8 +1,9 @@
-//! The visits of a laser log, judged as sets of what the scans cannot exclude. Section 2.1.
+//! The visits of a log of scans or images, judged as sets of what these cannot exclude. Section 2.1.
 //!
-//! What scans show may be wrong in one visit of many, so it may support that a log conforms, and accuses nobody. If it fits no
-//! choice in the known world, it is compared once more by what was [driven](DrivenVisits) or is seen to end alone. That accuses
-//! nobody either: a pass may lie beside the place that it is of, where odometry drifts.
+//! What is not certain may be wrong in one visit of many, so it may support that a log conforms, and accuses nobody. The visits
+//! of a log of images are judged so only if some are not certain; up to the first of these the others accuse. If what scans
+//! show fits no choice in the known world, it is compared once more by what was [driven](DrivenVisits) or is seen to end alone.
+//! That accuses nobody either: a pass may lie beside the place that it is of, where odometry drifts.
 //!
 //! The doors of an algorithm are compared with the choices one by one, and accuse nobody: which percepts led to them is seen.
 //!
@@ -35,9 +36,9 @@ use super::{
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PossibleVisits {
     pub visits: usize,
-    /// Those of which the scans leave one percept.
+    /// Those of which one percept is left.
     pub certain: usize,
-    /// Those of which the scans leave several percepts and the known world one, counted from 0.
+    /// Those of which several percepts are left, and the known world leaves one, counted from 0.
     pub decided_by_world: Vec<usize>,
     pub fit: VisitFit,
     /// Whether the building is a network of corridors at all.
@@ -59,6 +60,9 @@ pub struct PossibleVisits {
     /// The search for a choice that some world explains, with this world, if none is known.
     #[serde(skip)]
     pub(super) searched: Option<(Explanation, Option<ClosedTrail>)>,
+    /// Whether the log records the map of an algorithm. It is compared with that of certain percepts alone.
+    #[serde(skip)]
+    pub(super) records_map: bool,
     /// Whether the robot may have taken any doors: those of an algorithm depend on the percepts.
     #[serde(skip)]
     by_anyone: bool,
@@ -105,7 +109,8 @@ impl PossibleVisits {
         let is_visit = |&set: &usize| events.events[at[set]].kind != CheckedKind::TurnedBack;
         let of_junctions: Vec<usize> = (0..sets.len()).filter(is_visit).collect();
         let certain = of_junctions.iter().filter(|&&set| sets[set].is_certain()).count();
-        let mut judged = Self { visits: of_junctions.len(), certain, by_anyone, ..Self::default() };
+        let (visits, records_map) = (of_junctions.len(), events.map.is_some() && !by_anyone);
+        let mut judged = Self { visits, certain, records_map, by_anyone, ..Self::default() };
         if has_unseen_way(&events.events) {
             return Self { fit: VisitFit::UnseenWay, ..judged };
         }
@@ -197,6 +202,7 @@ impl PossibleVisits {
     pub(super) fn conform(&self) -> bool {
         (self.by_anyone || self.algorithm == Some(VisitFit::Fits))
             && !self.is_unreliable()
+            && !self.records_map
             && self.fit == VisitFit::Fits
             && self.is_certain_enough()
     }

@@ -41,7 +41,7 @@ impl CheckedLog {
             };
         }
         let trace = &judgement.trace;
-        if judgement.lost.is_some() || !trace.relocations().is_empty() {
+        if !trace.relocations().is_empty() {
             return Err(NotProved::Lost);
         }
         let walk = PerceivedWalk::new(trace.percepts(), trace.doors())?;
@@ -63,7 +63,7 @@ impl CheckedLog {
     fn proofs_of_run(&self) -> Result<Vec<Proof<'_>>, NotProved> {
         let ConformConfig { aid, world, .. } = &self.config;
         let trace = &self.judgement.trace;
-        if self.judgement.lost.is_some() || !trace.relocations().is_empty() {
+        if !trace.relocations().is_empty() {
             return Err(NotProved::Lost);
         }
         let run = PerceivedRun::new(*aid, trace)?;

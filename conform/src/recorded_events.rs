@@ -135,7 +135,7 @@ impl RecordedEvents {
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
-    use toposlam_model::{driving::visit::JunctionShape, percept::Sighting};
+    use toposlam_model::{aid::AidAction, driving::visit::JunctionShape, percept::Sighting};
 
     use super::*;
 
@@ -165,6 +165,28 @@ mod tests {
         (off, entry_off)
     }
 
+    #[test]
+    fn a_robot_that_does_something_with_its_marker_perceives_again_where_it_stands() {
+        let mut recorded = RecordedEvents::default();
+        let mut observe = |kind| recorded.observe(EventSource::default(), &kind);
+        let at = |x| EventKind::Odometry(Odometry { position: [x, 0.0], heading: 0.0 });
+        observe(arrival(0, [true, true, false, true], PI));
+        observe(EventKind::Door { number: Some(1), door: Door(1) });
+        observe(at(0.0));
+        observe(at(4.0));
+        observe(arrival(1, [true; 4], PI));
+        let action = AidAction::Drop;
+        observe(EventKind::Action { number: Some(1), action });
+        observe(arrival(1, [true; 4], PI));
+        let [.., before, acted, again] = &recorded.finish()[..] else { panic!() };
+        assert_eq!(acted.kind, CheckedKind::Action { number: Some(1), action });
+        let measured = |event: &CheckedEvent| match &event.kind {
+            CheckedKind::Arrival { entry_off, .. } => entry_off.is_some(),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!([before, again].map(measured), [true, false]);
+    }
+
     /// In a network of corridors a junction has no shape of right angles.
     #[test]
     fn a_robot_that_drives_into_arms_is_not_accused_of_the_way_to_the_place_where_it_was_before() {
@@ -184,6 +206,16 @@ mod tests {
         let last = recorded.finish().pop().unwrap();
         let CheckedKind::Arrival { entry_off, hallway, .. } = last.kind else { panic!("{last:?}") };
         assert_eq!((entry_off, hallway), (None, None));
+        // A dead end has no shape of right angles anywhere.
+        let mut recorded = RecordedEvents::default();
+        let mut observe = |kind| recorded.observe(EventSource::default(), &kind);
+        observe(EventKind::Arrival(Arrival { degree: 1, ..junction }));
+        observe(at(0.0));
+        observe(at(4.0));
+        observe(arrival(1, [true; 4], PI));
+        let last = recorded.finish().pop().unwrap();
+        let CheckedKind::Arrival { entry_off, .. } = last.kind else { panic!("{last:?}") };
+        assert_eq!(entry_off, Some(0.0));
     }
 
     #[test]

@@ -399,6 +399,80 @@ mod tests {
         assert_eq!(placing.counts().other_clock, 3);
     }
 
+    /// After odometry at these times, in seconds, each with its time as the place: the places of a scan at a time, and the counts.
+    fn placed_after(times: &[f64], scan_at: f64) -> (Vec<f64>, StampCounts) {
+        let nanoseconds = |time: f64| (time * SECOND as f64).round() as u64;
+        let mut placing = ScanOdometry::default();
+        for &time in times {
+            assert!(placing.add_odometry(nanoseconds(time), at(time)).is_empty());
+        }
+        let mut placed = placing.add_scan(scan(nanoseconds(scan_at)));
+        let counts = placing.counts();
+        placed.extend(placing.finish().unwrap());
+        (places(&placed), counts)
+    }
+
+    #[test]
+    fn the_history_of_odometry_reaches_back_five_seconds_and_two_readings() {
+        let place = |times: &[f64], scan_at| placed_after(times, scan_at).0[0];
+        // Before all odometry a scan is where the robot was first, ...
+        assert_eq!(place(&[20.0, 20.5], 19.0), 20.0);
+        // ... and before what is left of it, where the log has it.
+        assert_eq!(place(&[10.0, 20.0, 20.5], 17.0), -1.0);
+        assert_eq!(place(&[15.5, 20.0, 20.5], 17.0), 15.5);
+        assert_eq!(place(&[10.0, 20.0], 17.0), 10.0);
+        // A second back is late, more is another clock; so is more than an hour forwards.
+        for (times, scan_at, kept) in [
+            ([100.0, 99.0], 99.0, true),
+            ([100.0, 98.9], 98.9, false),
+            ([100.0, 3700.0], 3700.0, true),
+            ([100.0, 3700.1], 3700.1, false),
+        ] {
+            assert_eq!(place(&times, scan_at) == scan_at, kept, "{times:?}");
+        }
+    }
+
+    #[test]
+    fn late_messages_and_those_of_another_clock_are_counted() {
+        let counts = |times: &[f64], scan_at| {
+            let StampCounts { late_scans, other_clock, .. } = placed_after(times, scan_at).1;
+            (late_scans, other_clock)
+        };
+        assert_eq!(counts(&[10.0, 10.2], 10.15), (0, 0));
+        assert_eq!(counts(&[10.0, 10.2], 10.1), (1, 0));
+        assert_eq!(counts(&[10.0, 20.0], 15.0), (1, 0));
+        assert_eq!(counts(&[10.0, 20.0], 14.9), (0, 1));
+        let late_odometry = |scan_at: u64, time: u64| {
+            let mut placing = ScanOdometry::default();
+            placing.add_odometry(SECOND, at(1.0));
+            placing.add_scan(scan(scan_at));
+            let placed = placing.add_odometry(time, at(2.0));
+            (placing.counts().late_odometry, placing.counts().other_clock, placed.len())
+        };
+        assert_eq!(late_odometry(2 * SECOND, 2 * SECOND - LATENCY), (1, 0, 0));
+        assert_eq!(late_odometry(2 * SECOND, 2 * SECOND - LATENCY + 1), (0, 0, 0));
+        // A scan waits for five seconds.
+        assert_eq!(late_odometry(2 * SECOND + HISTORY, 2 * SECOND), (1, 0, 0));
+        assert_eq!(late_odometry(2 * SECOND + HISTORY + 1, 2 * SECOND), (0, 1, 1));
+    }
+
+    #[test]
+    fn scans_are_released_in_order_once_no_earlier_one_is_expected() {
+        let mut order = ScanOrder::default();
+        let mut add = |milliseconds: &[u64]| {
+            let scans = milliseconds.iter().map(|time| scan(time * 1_000_000)).collect();
+            order.add(scans).iter().map(|scan| scan.stamp / 1_000_000).collect::<Vec<_>>()
+        };
+        assert!(add(&[10_000, 10_200, 10_100]).is_empty());
+        assert_eq!(add(&[11_100]), [10_000, 10_100]);
+        // Five seconds are a pause, more are another clock.
+        assert_eq!(add(&[16_100]), [10_200, 11_100]);
+        assert_eq!(add(&[11_100]), [11_100]);
+        assert_eq!(add(&[900_000]), [16_100]);
+        assert_eq!(add(&[16_000]), [900_000]);
+        assert_eq!(order.finish().len(), 1);
+    }
+
     #[test]
     fn without_odometry_no_scan_has_a_place() {
         let mut placing = ScanOdometry::default();

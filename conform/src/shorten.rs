@@ -191,3 +191,29 @@ impl RunEvents {
         Some(self.with_events(events))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::percept::{Door, Percept, Sighting};
+
+    use super::*;
+
+    #[test]
+    fn the_events_of_a_trace_are_those_of_a_robot_that_got_lost_where_it_did() {
+        let arrival = |number| {
+            let mut kind = CheckedKind::from(Percept { degree: 3, sighting: Sighting::Nothing });
+            if let CheckedKind::Arrival { arrival, .. } = &mut kind {
+                arrival.number = number;
+            }
+            kind
+        };
+        let door = || CheckedKind::from(Door(1));
+        let kinds = [arrival(Some(0)), door(), arrival(None), door(), arrival(Some(2))];
+        let event = |kind| CheckedEvent { source: EventSource::default(), kind };
+        let events = kinds.map(event).to_vec();
+        let events = RunEvents { events, has_head: true, ..RunEvents::default() };
+        let again = events_of_trace(&events.trace().unwrap(), &events);
+        let relocations = |events: &RunEvents| events.relocations().collect::<Vec<_>>();
+        assert_eq!((relocations(&events), relocations(&again)), (vec![2], vec![2]));
+    }
+}

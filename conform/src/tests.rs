@@ -32,6 +32,8 @@ use super::*;
 
 mod extracted;
 mod folding;
+mod log_check;
+mod log_report;
 mod measured;
 mod moving;
 mod oracle;
@@ -40,7 +42,9 @@ mod possible;
 mod recovery;
 mod report;
 mod tolerance;
+mod undirected;
 mod verdicts;
+mod words;
 
 const DARTS: usize = 400;
 const FOLDING: MappingAlgorithm = MappingAlgorithm::Folding;

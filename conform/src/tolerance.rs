@@ -74,8 +74,7 @@ impl<'q> Tolerance<'q> {
                 self.amended.events.get(divergence.event)?.arrival()?;
                 expected(&divergence.cause).map(|_| quirk)
             }
-            DivergenceCause::NotInTurn(_) | DivergenceCause::NoWorld { .. } => None,
-            // It is skipped.
+            // It is skipped. Quirk files have no causes after which it is not known how the run continues.
             _ => Some(quirk),
         }
     }

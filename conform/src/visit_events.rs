@@ -120,6 +120,13 @@ mod tests {
         let least = shorten_frames(&seen, &events[2]).unwrap();
         // Two images of the junction, and where the robot went.
         assert!(least.len() == 3 && kinds(&infer_events(least, false)));
+        // A robot that turns back comes from a junction.
+        let on = [hallway([0.0, 2.0], FRAC_PI_2), hallway([0.0, 1.9], -FRAC_PI_2)];
+        let visit = [-0.8, -0.5, -0.2].map(junction).to_vec();
+        let seen: Vec<_> = (0..).zip([visit, on.to_vec()].concat()).map(scene).collect();
+        let turned = infer_events(&seen, false).pop().unwrap();
+        assert_eq!(turned.kind, CheckedKind::TurnedBack);
+        assert_eq!(shorten_frames(&seen, &turned).unwrap().len(), 4);
         // A place that is left after the next one was seen is left before it.
         let mut log = VisitLog { visits: Vec::new(), turned_back: Vec::new() };
         log.turned_back = [9, 7, 8].map(|time| EventSource { time, ..events[0].source }).to_vec();

@@ -300,7 +300,7 @@ fn no_network(network: &NetworkFit) -> Option<String> {
     Some(format!("this building is not a network of corridors: {why}"))
 }
 
-/// The visits of a laser log that are not certain, and whether some choice of their percepts fits.
+/// The visits of a log that are not certain, and whether some choice of their percepts fits.
 fn possible(visits: &PossibleVisits, report: &LogReport) -> Option<String> {
     let PossibleVisits { visits: all, certain, fit, algorithm, decided_by_world, .. } = visits;
     let (world, no_choice) = if report.facts.world.is_some() {
@@ -348,6 +348,9 @@ fn possible(visits: &PossibleVisits, report: &LogReport) -> Option<String> {
         VisitFit::Fits => parts.push(format!(
             "a choice of their percepts fits {world}, which says little: less than two thirds are certain"
         )),
+    }
+    if *fit == VisitFit::Fits && visits.records_map && certain < all {
+        parts.push("the map that the log records is not compared".to_owned());
     }
     let decided: Vec<_> = decided_by_world.iter().map(|visit| (visit + 1).to_string()).collect();
     match &decided[..] {

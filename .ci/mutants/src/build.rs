@@ -32,6 +32,8 @@ impl Mutant {
 pub struct TestProgram {
     pub path: PathBuf,
     pub folder: PathBuf,
+    /// Whether it tests the whole program, and not one crate.
+    pub is_of_program: bool,
 }
 
 pub struct Build {
@@ -48,16 +50,18 @@ struct File {
     placed: Vec<Placed>,
 }
 
-/// Compiles the mutants of a package, and its tests.
+/// Compiles mutants of a package, by their indices, and its tests.
 ///
 /// # Errors
 ///
 /// Returns an error if the copy cannot be written, or does not compile without mutants.
-pub fn build(package: &Package) -> Result<Build, Box<dyn Error>> {
+pub fn build(package: &Package, selected: &[usize]) -> Result<Build, Box<dyn Error>> {
     let Package { name, folder, tests, .. } = package;
     let copy = PathBuf::from(format!("target/mutants/{name}"));
     copy_repository(folder, &copy)?;
     let (mut files, mut mutants) = find_mutants(package)?;
+    let mut is_selected = vec![false; mutants.len()];
+    selected.iter().for_each(|&mutant| is_selected[mutant] = true);
     let module = include_str!("switch.rs")
         .replace("[AtomicBool; COUNT]", &format!("[AtomicBool; {}]", mutants.len()));
     let module = module.replace("; COUNT]", &format!("; {}]", mutants.len()));
@@ -66,7 +70,7 @@ pub fn build(package: &Package) -> Result<Build, Box<dyn Error>> {
         for file in &mut files {
             let number = |site: usize, change: usize| {
                 let number = file.first[site] + change;
-                mutants[number].compiles.then_some(number as u32)
+                (is_selected[number] && mutants[number].compiles).then_some(number as u32)
             };
             let (mut text, placed) = switched::switched(&file.source, &file.sites, number);
             if file.path == format!("{folder}/src/lib.rs") {
@@ -211,7 +215,9 @@ fn cargo(
                 let folder =
                     line["manifest_path"].as_str().and_then(|path| Path::new(path).parent());
                 let folder = folder.ok_or("Cargo does not name the manifest of a test program")?;
-                programs.push(TestProgram { path: path.into(), folder: folder.to_owned() });
+                let (path, folder) = (path.into(), folder.to_owned());
+                let is_of_program = folder == fs::canonicalize(copy)?;
+                programs.push(TestProgram { path, folder, is_of_program });
             }
         } else if line["reason"] == "compiler-message" && message["level"] == "error" {
             errors.push(compiler_error(message));

@@ -15,16 +15,19 @@ use build::Mutant;
 use tests::Outcome;
 
 const HELP: &str = "\
-Usage: .ci/mutants/run PACKAGE [TEXT]... [--since BASE] [--jobs J] [--list]
+Usage: .ci/mutants/run PACKAGE [TEXT]... [--since BASE] [--test TEXT] [--jobs J]
+                       [--list]
 
 Makes one small change after another in a package, and runs the tests that reach
 it. A test that fails, or that does not end, has caught the mutant.
 
-  PACKAGE       model, conform, or a part of vision: laser, visits (with the
-                tests of conformance), or vision for the rest
+  PACKAGE       model, conform (with the tests of its command), or a part of
+                vision: laser, visits (with the tests of conformance), or vision
+                for the rest
   TEXT          only the mutants whose names contain one of these texts, such as
                 vision/src/laser/
   --since BASE  only the mutants in files that have changed since commit BASE
+  --test TEXT   only the tests whose names contain this text, or one of several
   --jobs J      mutants tested at the same time (default: 2)
   --list        print the mutants, and run nothing
 
@@ -46,6 +49,13 @@ struct Package {
     tests: &'static [&'static str],
     /// Tests with these texts in their names are left out.
     without: &'static [&'static str],
+    /// Of the tests of the whole program, those whose names begin so run.
+    of_program: &'static [&'static str],
+}
+
+/// The bodies of fuzz targets are tests.
+fn is_fuzzing(file: &str) -> bool {
+    file.contains("/src/fuzz")
 }
 
 const LASER: &str = "vision/src/laser/";
@@ -59,6 +69,7 @@ const PACKAGES: &[Package] = &[
         tests: &["-p", "toposlam-model", "--lib", "--test", "all"],
         // Larger worlds catch nothing that smaller ones do not.
         without: &["costs::the_table_of_every_small_start_is_true"],
+        of_program: &[],
     },
     Package {
         name: "laser",
@@ -66,13 +77,15 @@ const PACKAGES: &[Package] = &[
         has: |file| file.starts_with(LASER),
         tests: &["-p", "toposlam-vision", "--lib"],
         without: &[],
+        of_program: &[],
     },
     Package {
         name: "vision",
         folder: "vision",
-        has: |file| !file.starts_with(LASER) && !file.starts_with(VISITS),
+        has: |file| !file.starts_with(LASER) && !file.starts_with(VISITS) && !is_fuzzing(file),
         tests: &["-p", "toposlam-vision", "--lib", "--test", "all"],
         without: &[],
+        of_program: &[],
     },
     Package {
         name: "visits",
@@ -80,13 +93,38 @@ const PACKAGES: &[Package] = &[
         has: |file| file.starts_with(VISITS),
         tests: &["-p", "toposlam-vision", "-p", "toposlam-conform", "--lib"],
         without: &[],
+        of_program: &[],
     },
     Package {
         name: "conform",
         folder: "conform",
-        has: |_| true,
-        tests: &["-p", "toposlam-conform", "--lib"],
+        has: |file| !is_fuzzing(file),
+        tests: &[
+            "-p",
+            "toposlam-conform",
+            "-p",
+            "toposlam",
+            "--lib",
+            "--test",
+            "all",
+            "--test",
+            "snapshots",
+        ],
         without: &[],
+        // Reports are printed by the command.
+        of_program: &[
+            "command_line::ci_report::",
+            "command_line::conform::",
+            "command_line::facts::conform",
+            "command_line::facts::lines",
+            "command_line::facts::names",
+            "command_line::facts::options",
+            "command_line::facts::walks",
+            "command_line::laser::the_vertices_of_a_run",
+            "command_line::sense::if_no_image",
+            "conform",
+            "verdicts::verdicts_about_logs",
+        ],
     },
 ];
 
@@ -94,6 +132,8 @@ struct Options {
     package: &'static Package,
     texts: Vec<String>,
     since: Option<String>,
+    /// Tests with none of these texts in their names are left out, if there are some.
+    tests: Vec<String>,
     jobs: usize,
     only_lists: bool,
 }
@@ -115,12 +155,13 @@ fn main() -> ExitCode {
 }
 
 fn options(arguments: &[String]) -> Result<Options, Box<dyn Error>> {
-    let (mut package, mut texts, mut since, mut jobs, mut only_lists) =
-        (None, Vec::new(), None, 2, false);
+    let (mut package, mut texts, mut since, mut tests, mut jobs, mut only_lists) =
+        (None, Vec::new(), None, Vec::new(), 2, false);
     let mut arguments = arguments.iter();
     while let Some(argument) = arguments.next() {
         match &**argument {
             "--since" => since = Some(arguments.next().ok_or("--since needs a commit")?.clone()),
+            "--test" => tests.push(arguments.next().ok_or("--test needs a text")?.clone()),
             "--jobs" => jobs = arguments.next().ok_or("--jobs needs a number")?.parse()?,
             "--list" => only_lists = true,
             option if option.starts_with('-') => {
@@ -137,6 +178,7 @@ fn options(arguments: &[String]) -> Result<Options, Box<dyn Error>> {
         package: package.ok_or("which package? see --help")?,
         texts,
         since,
+        tests,
         jobs,
         only_lists,
     })
@@ -164,11 +206,11 @@ fn examine(options: &Options) -> Result<bool, Box<dyn Error>> {
         selected.iter().for_each(|&mutant| println!("{}", mutants[mutant].name()));
         return Ok(true);
     }
-    let built = build::build(package)?;
+    let built = build::build(package, &selected)?;
     let compiled: Vec<usize> =
         selected.iter().copied().filter(|&mutant| built.mutants[mutant].compiles).collect();
     eprintln!("{} mutants, of which {} compile", selected.len(), compiled.len());
-    let tests = tests::record(&built.programs, package.without, options.jobs)?;
+    let tests = tests::record(&built.programs, options)?;
     let is_done = |done: usize, mutant: usize, outcome: Outcome| {
         let mutant = &built.mutants[mutant];
         if outcome.survives() && !listed.contains(&mutant.name()) {

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::build::TestProgram;
+use crate::{Options, build::TestProgram};
 
 pub struct Test {
     program: usize,
@@ -44,8 +44,7 @@ impl Outcome {
 /// Returns an error if a test fails.
 pub fn record(
     programs: &[TestProgram],
-    without: &[&str],
-    jobs: usize,
+    Options { package, tests: texts, jobs, .. }: &Options,
 ) -> Result<Vec<Test>, Box<dyn Error>> {
     let mut tests = Vec::new();
     for (program, at) in programs.iter().enumerate() {
@@ -59,8 +58,15 @@ pub fn record(
                 .collect())
         };
         let ignored = list(&["--ignored"])?;
+        let runs = |name: &String| {
+            !ignored.contains(name)
+                && (texts.is_empty() || texts.iter().any(|text| name.contains(text)))
+                && !package.without.iter().any(|left_out| name.contains(left_out))
+                && (!at.is_of_program
+                    || package.of_program.iter().any(|start| name.starts_with(start)))
+        };
         for name in list(&[])? {
-            if !ignored.contains(&name) && !without.iter().any(|left_out| name.contains(left_out)) {
+            if runs(&name) {
                 tests.push(Test { program, name, time: Duration::ZERO, reached: HashSet::new() });
             }
         }
@@ -68,7 +74,7 @@ pub fn record(
     if tests.is_empty() {
         return Err("there are no tests".into());
     }
-    let recorded = in_parallel(jobs, tests.len(), |index| {
+    let recorded = in_parallel(*jobs, tests.len(), |index| {
         let test = &tests[index];
         let file = std::env::current_dir()
             .expect("exists")

@@ -39,7 +39,7 @@ pub struct Facts {
     pub images: u64,
     pub unreadable_images: u64,
     pub scans: u64,
-    /// The visits of a laser log as sets of percepts.
+    /// The visits as sets of percepts: those of a log of scans, and those of images if some are not certain.
     pub possible: Option<PossibleVisits>,
     /// What does not fit, and accuses nobody.
     pub contradiction: Option<UnprovedDivergence>,

@@ -128,6 +128,9 @@ fn the_first_source_of_events_that_is_complete_is_chosen() {
         }
         assert_eq!(Evidence::from_topics(&log.open().1), source);
     }
+    let sources = [Evidence::Recorded, Evidence::Scenes, Evidence::Images, Evidence::Laser];
+    assert_eq!(sources.map(Evidence::option), ["recorded", "scenes", "images", "laser"]);
+    assert_eq!(sources.map(Evidence::name), ["recorded", "scenes", "pictures", "laser"]);
 }
 
 #[test]
@@ -184,7 +187,8 @@ fn scans_long_before_the_first_odometry_and_off_the_clock_are_counted() {
         unmatched,
         ExtractError::Unmatched(UnmatchedScan { message: EventId(2), time: 5_001_000_000_000 })
     ));
-    assert_eq!(nowhere(Written::scene).unwrap().scans, 0);
+    let by_scenes = nowhere(Written::scene).unwrap();
+    assert_eq!((by_scenes.scans, by_scenes.matched_scans), (0, None));
 }
 
 /// Recorded events and scans are compared with odometry in the order of the log.
@@ -199,6 +203,42 @@ fn stamps_of_odometry_matter_only_to_scenes() {
     assert_eq!(run(Evidence::Laser).unwrap().scans, 1);
     let by_scenes = run(Evidence::Scenes).unwrap_err();
     assert!(matches!(by_scenes, ExtractError::SceneClock(SceneClockError::Back { .. })));
+}
+
+/// Where the robot recovered is all that recorded events show beside scenes: neither their order nor their stamps matter.
+#[test]
+fn recorded_events_have_an_order_and_a_fixed_marker_where_they_are_the_evidence() {
+    let run = |change: fn(&mut Written), evidence| {
+        let mut log = Written::passing();
+        change(&mut log);
+        log.extract(evidence).map(|run| run.events.events.len())
+    };
+    let earlier = |log: &mut Written| {
+        log.write(messages::Percept::TOPIC, |at| {
+            let stamp = Stamp { sec: at.sec - 100, ..at };
+            messages::Percept { stamp, degree: 2, ..messages::Percept::default() }
+        });
+    };
+    let order = run(earlier, Evidence::Recorded).unwrap_err();
+    assert!(matches!(order, ExtractError::OutOfOrder { message: 7, .. }), "{order}");
+    assert!(run(earlier, Evidence::Scenes).is_ok());
+    let action = |log: &mut Written| {
+        let action = "drop".to_owned();
+        log.write(messages::Action::TOPIC, |stamp| messages::Action { stamp, r#move: 1, action });
+    };
+    assert_eq!(run(action, Evidence::Recorded).unwrap(), 3);
+    let moves = run(action, Evidence::Scenes).unwrap_err();
+    assert!(matches!(moves, ExtractError::Action { message: 7, .. }), "{moves}");
+}
+
+#[test]
+fn a_scene_off_the_clock_is_counted() {
+    let mut log = Written::passing();
+    log.scene();
+    log.seconds += 3601;
+    log.scene();
+    let run = log.extract(Evidence::Scenes).unwrap();
+    assert_eq!((run.seen.len(), run.skipped.off_clock), (2, 1));
 }
 
 #[test]

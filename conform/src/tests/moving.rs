@@ -122,8 +122,9 @@ fn a_run_with_each_aid_conforms_in_its_world_and_without_one() {
                 assert_eq!(judged_again.unwrap().verdict(), ConformVerdict::Conforms);
             } else {
                 let error = judged_again.unwrap_err();
-                let unseen = |error| matches!(error, SightingError::NotRecordedAfter { .. });
-                assert!(matches!(error, JudgeError::Marker(error) if unseen(error)), "{error}");
+                let expected =
+                    SightingError::NotRecordedAfter { event: nth(&kept, 0, is_action) + 1 };
+                assert!(matches!(error, JudgeError::Marker(found) if found == expected), "{error}");
             }
             // Nobody knows which worlds explain the doors of a robot that no algorithm drives.
             let anyone = driven(config(algorithm), RunDriver::Anyone);

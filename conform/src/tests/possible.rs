@@ -1,10 +1,14 @@
-//! Visits of a laser log that the scans do not decide: what fits, and that nobody is accused on a guess.
+//! Visits that scans or images do not decide: what fits, and that nobody is accused on a guess.
 
+use toposlam_logs::{messages, recorder::Recorder};
 use toposlam_model::{
     aid::AidKind,
+    driving::scene::{JunctionView, Place as SeenPlace, Scene},
     embedded_graph::EmbeddedGraph,
+    format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
     marker::{Directional, NoMarker},
+    proof::Claim,
     trace::anywhere,
 };
 use toposlam_vision::visits::{
@@ -12,7 +16,7 @@ use toposlam_vision::visits::{
     network_fit::{NetworkFault, NetworkFit},
 };
 
-use super::*;
+use super::{log_check::Question, recovery::head_of, *};
 use crate::{
     DrivenVisits, PossibleVisits, UndecidedCause, Unproved, VisitFit, VisitedJunction,
     known_world::KnownWorld,
@@ -217,6 +221,67 @@ fn a_log_of_which_no_visit_is_decided_is_not_known_to_conform() {
 }
 
 #[test]
+fn visits_that_fit_decide_nothing_if_the_search_for_a_world_ends_early() {
+    let fork: Seen = (&[Some((3, 1))], false);
+    let (kinds, junctions) = events_of(&[fork, (&[Some((3, 0))], true), fork]);
+    let events = bare_events(kinds);
+    let verdict = |max_edges| {
+        let search = WorldSearch { max_edges, ..by_anyone().search };
+        let config = ConformConfig { search, aid: NoMarker.into(), ..by_anyone() };
+        let possible = PossibleVisits::judge(&events, &junctions, None, &config, &());
+        assert_eq!(possible.fit, VisitFit::Fits);
+        judged(&events, &config).with_possible(possible).verdict()
+    };
+    assert_eq!(verdict(None), ConformVerdict::Conforms);
+    assert_eq!(verdict(Some(1)), ConformVerdict::NotKnown);
+}
+
+#[test]
+fn visits_conform_if_a_choice_fits_that_the_driver_takes_and_most_of_them_are_certain() {
+    let (end, fork): (Seen, Seen) = ((&[Some((1, 0))], true), (&[Some((3, 1))], false));
+    let open: Seen = (&[Some((3, 1)), Some((4, 1)), None], false);
+    let judged = |visits: &[Seen], driver: RunDriver| {
+        let (kinds, junctions) = events_of(visits);
+        let states = anywhere(&ring(), &AidKind::from(NoMarker));
+        let world = Some(KnownWorld { graph: ring(), states });
+        let config = ConformConfig { world, aid: NoMarker.into(), ..driven(by_anyone(), driver) };
+        PossibleVisits::judge(&bare_events(kinds), &junctions, None, &config, &())
+    };
+    let certain = judged(&[end, fork], RunDriver::Anyone);
+    assert!(certain.conform() && certain.is_certain_enough());
+    // Two of three are enough, one of two is not.
+    assert!(judged(&[end, fork, open], RunDriver::Anyone).conform());
+    assert!(!judged(&[end, open], RunDriver::Anyone).conform());
+    assert!(!PossibleVisits::default().is_certain_enough());
+    let mut misfit = certain.clone();
+    misfit.fit = VisitFit::Contradiction;
+    assert!(!misfit.conform() && !certain.without_odometry(true).conform());
+    let mut by_algorithm = judged(&[end, fork], RunDriver::from(MappingAlgorithm::Folding));
+    for (fit, conforms) in
+        [(None, false), (Some(VisitFit::NotKnown), false), (Some(VisitFit::Fits), true)]
+    {
+        by_algorithm.algorithm = fit;
+        assert_eq!(by_algorithm.conform(), conforms, "{fit:?}");
+    }
+    // Without a marker none is seen.
+    let sets = judged(&[open], RunDriver::Anyone).sets;
+    assert_eq!(sets[0].alternatives().len(), 3);
+}
+
+/// The candidates of recorded events are the poses that fit them, and those of visits the states that fit their sets.
+#[test]
+fn a_junction_that_is_not_recognised_leaves_the_candidates_before_it() {
+    let unclear = CheckedKind::Undecided(UndecidedCause::Unclear);
+    let events = bare_events([bare_arrival(3, Sighting::Nothing), bare_door(1), unclear]);
+    let ring = ring();
+    let states = anywhere(&ring, &AidKind::from(NoMarker));
+    let world = Some(KnownWorld { graph: ring, states });
+    let found = judged(&events, &ConformConfig { world, aid: NoMarker.into(), ..by_anyone() });
+    // By any of its three doors.
+    assert_eq!((found.unrecognised, found.candidates()), (Some(2), 3));
+}
+
+#[test]
 fn without_a_world_a_marker_and_turning_back_any_visits_would_fit() {
     let fork: Seen = (&[Some((3, 1))], false);
     let back: Seen = (&[Some((3, 0))], true);
@@ -256,5 +321,94 @@ fn visits_without_odometry_or_in_a_building_that_is_no_network_of_corridors_deci
         let possible = found.possible.clone().unwrap().without_odometry(true);
         let open = found.with_possible(possible);
         assert_eq!((open.verdict(), open.smallest), (ConformVerdict::NotKnown, None));
+    }
+}
+
+/// Records a run, and doubts what is seen near a point.
+struct Doubtful<O> {
+    log: O,
+    near: Option<[f64; 2]>,
+    /// Where the robot was at each arrival.
+    arrivals: Vec<[f64; 2]>,
+    at: [f64; 2],
+}
+
+impl<O: RunObserver> RunObserver for Doubtful<O> {
+    fn event(&mut self, event: &Event) {
+        let mut event = event.clone();
+        match &mut event.kind {
+            EventKind::Frame(Frame { scene: Some(Scene { place, .. }), odometry, .. }) => {
+                self.at = odometry.position;
+                let is_near = |near: [f64; 2]| {
+                    let near = Odometry { position: near, ..Odometry::default() };
+                    near.distance(odometry) < 1.5
+                };
+                if let SeenPlace::Junction(JunctionView { confidence, .. }) = place
+                    && self.near.is_some_and(is_near)
+                {
+                    *confidence = 0.5;
+                }
+            }
+            EventKind::Arrival(_) => self.arrivals.push(self.at),
+            _ => {}
+        }
+        self.log.event(&event);
+    }
+}
+
+/// The log of a run of the folding explorer in shape 8, and its head. The scenes near one of its visits are in doubt.
+fn doubtful_log(visit: usize) -> (Vec<u8>, messages::Run) {
+    let (plan, facing) = place_in("shape-8");
+    let settings = RunSettings::new(MappingAlgorithm::Folding, DARTS);
+    let head = head_of(&settings);
+    let record = |near| {
+        let mut bytes = Vec::new();
+        let robot = SimulationConfig::at_start(plan.clone(), facing, 1);
+        let robot = SimulationConfig { keeps_track: true, ..robot }.by_scene();
+        let arrivals = {
+            let log = Recorder::new(&mut bytes, &head, None).unwrap();
+            let mut observer = Doubtful { log, near, arrivals: Vec::new(), at: [0.0; 2] };
+            run(&plan, facing, robot, NoSensor, &mut observer, &settings);
+            observer.log.finish().unwrap();
+            observer.arrivals
+        };
+        (bytes, arrivals)
+    };
+    let arrivals = record(None).1;
+    (record(Some(arrivals[visit])).0, head)
+}
+
+#[test]
+fn scenes_that_do_not_decide_a_visit_are_judged_as_sets() {
+    let world_of = |name| {
+        let (plan, facing) = place_in(name);
+        NamedWorld::numbered(name, "", plan.graph().clone(), Some(facing))
+    };
+    let (own, other) = (world_of("shape-8"), world_of("shape-6"));
+    for visit in 1..8 {
+        let (log, head) = doubtful_log(visit);
+        let judged = |world, doors| {
+            let scenes = Question::new(&log, Evidence::Scenes);
+            let checked =
+                Question { head: head.clone(), world, doors, ..scenes }.checked().unwrap();
+            let possible = checked.judgement.possible.as_ref();
+            let proofs = checked.proofs().unwrap();
+            let is_fit =
+                proofs.iter().all(|proof| matches!(proof.claims[..], [Claim::Fits { .. }]));
+            let fits = possible.is_some_and(|sets| sets.fit == VisitFit::Fits);
+            assert_eq!(is_fit, fits, "{visit}");
+            (checked.judgement.verdict(), possible.map(|sets| (sets.fit, sets.algorithm)))
+        };
+        let fits = VisitFit::Fits;
+        for world in [Some(&own), None] {
+            let by_anyone = judged(world, DoorChooser::Anyone);
+            assert_eq!(by_anyone, (ConformVerdict::Conforms, Some((fits, None))), "{visit}");
+        }
+        // The map that the log records is compared with that of certain percepts alone.
+        let by_algorithm = judged(Some(&own), DoorChooser::Algorithm(None));
+        let not_known = (ConformVerdict::NotKnown, Some((fits, Some(fits))));
+        assert_eq!(by_algorithm, not_known, "{visit}");
+        let elsewhere = judged(Some(&other), DoorChooser::Anyone);
+        assert_ne!(elsewhere.0, ConformVerdict::Conforms, "{visit}");
     }
 }

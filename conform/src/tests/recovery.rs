@@ -1,6 +1,6 @@
 //! Logs of robots that recover, that got lost, and that turn back to keep within a budget.
 
-use toposlam_logs::{messages, reader, recorder::Recorder, topic_map::TopicMap};
+use toposlam_logs::{messages, recorder::Recorder};
 use toposlam_model::{
     aid::AidKind,
     format::named_world::NamedWorld,
@@ -8,9 +8,8 @@ use toposlam_model::{
     marker::{MarkerKind, NoMarker, Undirected},
     trace::{AllowedStep, Departure, MatchEnd, StepPurpose},
 };
-use toposlam_vision::laser::params::LaserParams;
 
-use super::*;
+use super::{log_check::Question, *};
 
 pub(super) fn recovering() -> MappingMethod {
     let noise = Some(log_noise());
@@ -149,6 +148,27 @@ fn a_robot_turns_back_exactly_when_its_budget_of_moves_needs_it() {
     }
 }
 
+/// Where the robot must turn back, a door that is not that of the algorithm either is a fault of the algorithm.
+#[test]
+fn a_door_of_no_algorithm_is_no_way_back_that_was_missed() {
+    let place = place_in("building-12");
+    let (events, _) = log_with(&RunSettings::new(FOLDING, DARTS), &place, None, 1);
+    let mut too_late = 0;
+    for most in (4..30).step_by(3) {
+        let budget = RunBudget { moves: Some(most), ..RunBudget::default() };
+        let config = ConformConfig { budget, ..driven(at_place(&place), FOLDING) };
+        let is_back = |departure: &Departure| departure.allowed[0].purpose == StepPurpose::TurnBack;
+        let missed = departure(&events, &config).unwrap();
+        assert!(is_back(&missed), "{most}");
+        let Some(other) = with_other_door(&events, missed.event.id) else { continue };
+        let departed = departure(&other, &config).unwrap();
+        assert_eq!(departed.event.id, missed.event.id, "{most}");
+        assert!(!is_back(&departed), "{most}");
+        too_late += 1;
+    }
+    assert!(too_late > 3, "{too_late}");
+}
+
 #[test]
 fn a_robot_that_recovers_does_not_end_with_lengths_that_contradict_each_other() {
     let (place, config) = recovering_in("shape-8");
@@ -164,6 +184,15 @@ fn a_robot_that_recovers_does_not_end_with_lengths_that_contradict_each_other() 
     assert_eq!(judgement.divergence.unwrap().cause.name(), "moved");
 }
 
+/// The head of the log of a run.
+pub(super) fn head_of(settings: &RunSettings) -> messages::Run {
+    messages::Run {
+        marker: "directional".to_owned(),
+        algorithm: settings.recorded().to_string(),
+        ..messages::Run::default()
+    }
+}
+
 /// The judgements of the scenes of a run that recovers from a fault: with and without its world, with and without its
 /// algorithm, with a search that ends early, and with other markers.
 fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
@@ -173,18 +202,11 @@ fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
     let (plan, facing) = (&place.0, place.1);
     let robot = SimulationConfig::at_start(plan.clone(), facing, seed);
     let robot = SimulationConfig { faults, keeps_track: true, ..robot };
-    let head = messages::Run {
-        marker: "directional".to_owned(),
-        algorithm: settings.recorded().to_string(),
-        ..messages::Run::default()
-    };
     let mut log = Vec::new();
+    let head = head_of(&settings);
     let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
     run(plan, facing, robot.by_scene(), RobotSensor::Scenes, &mut recorder, &settings);
     recorder.finish().unwrap();
-    let log = reader::Log::of_bytes(log).unwrap();
-    let topics = TopicMap::unambiguous(&log);
-    let source = LogSource { log: &log, topics: &topics, head: Some(&head), sensor: None };
     let world = NamedWorld::numbered(name, "", plan.graph().clone(), Some(facing));
     let anyone = DoorChooser::Anyone;
     let marked = [
@@ -194,19 +216,10 @@ fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
         (anyone, Some(Undirected)),
     ];
     let check = |(doors, marker): (_, Option<MarkerKind>), world, start, steps| {
-        let check = LogCheck {
-            evidence: Evidence::Scenes,
-            laser: LaserParams::default(),
-            world,
-            start,
-            aid: marker.map(AidKind::from),
-            assumes_marker: false,
-            doors,
-            search: WorldSearch { class: Class::Multigraph, max_edges: None, steps },
-            max_darts: None,
-            quirks: &Quirks::default(),
-        };
-        check.run(&source, &(), || {}).unwrap().judgement
+        let aid = marker.map(AidKind::from);
+        let head = head.clone();
+        let scenes = Question::new(&log, Evidence::Scenes);
+        Question { head, world, start, aid, doors, steps, ..scenes }.checked().unwrap().judgement
     };
     let (recorded, anywhere) = (RobotStart::Recorded, RobotStart::Anywhere);
     let ways = [

@@ -6,9 +6,11 @@ use std::{
 };
 
 use toposlam_model::{
-    aid::{AidAction, Places, State},
+    aid::{AidAction, Places, State, markers::MOVABLE},
     trace::{Departure, Misfit, MisfitReason, TraceEvent, TraceEventKind, TraceOrderError},
 };
+
+use serde_json::{Value, json};
 
 use super::*;
 use crate::divergence::{NAMES, OFF};
@@ -62,6 +64,93 @@ fn each_cause_has_a_name_and_a_class() {
     }
     let names: BTreeSet<_> = table.iter().map(|(cause, ..)| cause.name()).collect();
     assert_eq!(names, BTreeSet::from(NAMES));
+}
+
+#[test]
+fn the_numbers_of_a_cause_are_in_its_json() {
+    use DivergenceCause::*;
+    let measurement = ContradictoryMeasurement::Shape;
+    let nothing = Value::Null;
+    for (cause, counts, off, events) in [
+        (Number { expected: 2, recorded: 5 }, json!([2, 5]), &nothing, &nothing),
+        (Moves { made: 7, recorded: 8 }, json!([7, 8]), &nothing, &nothing),
+        (Form { degree: 3, doors: 2 }, json!([2, 3]), &nothing, &nothing),
+        (Return { before: 3, now: 4 }, json!([3, 4]), &nothing, &nothing),
+        (Unfinished { unexplored: 3 }, json!([3, 0]), &nothing, &nothing),
+        (LeftBetweenDoors { off: 0.5 }, Value::Null, &json!(0.5), &nothing),
+        (Entry { off: 0.5 }, Value::Null, &json!(0.5), &nothing),
+        (
+            Measurement { between: [2, 4], earlier: [0, 2], measurement },
+            Value::Null,
+            &nothing,
+            // They are counted from 1.
+            &json!([[3, 5], [1, 3]]),
+        ),
+        (TurnedBack, Value::Null, &nothing, &nothing),
+    ] {
+        let found = serde_json::to_value(&cause).unwrap();
+        assert_eq!([&found["expected"], &found["recorded"]], [&counts[0], &counts[1]], "{cause}");
+        assert_eq!(&found["off"], off, "{cause}");
+        assert_eq!([&found["between"], &found["earlier"]], [&events[0], &events[1]], "{cause}");
+    }
+}
+
+#[test]
+fn an_event_has_in_json_what_was_perceived_taken_or_done() {
+    let action = CheckedKind::Action { number: None, action: AidAction::Drop };
+    for (kind, expected) in [
+        (
+            bare_arrival(3, Sighting::Pointing(Door(2))),
+            json!({"what": "percept", "degree": 3, "marker": 2, "door": null}),
+        ),
+        (
+            bare_arrival(3, Sighting::Nothing),
+            json!({"what": "percept", "degree": 3, "marker": -1, "door": null}),
+        ),
+        (
+            bare_arrival(3, Sighting::Lying(1)),
+            json!({"what": "percept", "degree": 3, "marker": true, "door": null}),
+        ),
+        (bare_door(2), json!({"what": "door", "degree": null, "marker": null, "door": 2})),
+        (
+            action,
+            json!({"what": "action", "degree": null, "marker": null, "door": null, "action": "drop"}),
+        ),
+        (
+            CheckedKind::TurnedBack,
+            json!({"what": "turned-back", "degree": null, "marker": null, "door": null}),
+        ),
+    ] {
+        assert_eq!(serde_json::to_value(&kind).unwrap(), expected);
+    }
+}
+
+#[test]
+fn a_verdict_has_a_name_and_words() {
+    use ConformVerdict::*;
+    for (verdict, name, words) in [
+        (Conforms, "conforms", "conforms"),
+        (Diverged, "diverged", "diverged"),
+        (NotKnown, "not-known", "not known"),
+    ] {
+        assert_eq!(serde_json::to_value(verdict).unwrap(), name);
+        assert_eq!((verdict.name(), verdict.in_words()), (name, words));
+    }
+}
+
+#[test]
+fn a_percept_that_departs_from_an_algorithm_is_one_of_no_start_or_a_contradiction() {
+    let percept = TraceEventKind::Percept(Percept { degree: 3, sighting: Sighting::Nothing });
+    let words = |id, algorithm| {
+        let event = TraceEvent { id, kind: percept };
+        DivergenceCause::Algorithm(Departure { algorithm, event, allowed: Vec::new() }).to_string()
+    };
+    let at_marker = "a run begins where the marker lies, directed along the entry door";
+    assert_eq!(words(0, FOLDING), at_marker);
+    assert_eq!(words(2, FOLDING), "this percept contradicts the percepts before it");
+    let movable = MappingAlgorithm::MovableMarkers(MOVABLE);
+    let with_aid = "a run begins where the robot has all of its marking aid, `movable`";
+    assert_eq!(words(0, movable), with_aid);
 }
 
 /// The events of a measurement are counted from 1.

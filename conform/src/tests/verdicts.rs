@@ -509,6 +509,22 @@ fn a_driver_may_turn_back_but_not_find_another_junction_then() {
     assert_eq!(judgement.verdict(), ConformVerdict::NotKnown);
 }
 
+/// A robot that left between two doors took none of them, and did not turn back.
+#[test]
+fn leaving_between_two_doors_is_one_fault_at_the_event_that_records_it() {
+    let fork = || bare_arrival(3, Sighting::Nothing);
+    let door = |off| CheckedKind::Door { door: Door(1), number: None, off: Some(off) };
+    let aside = || CheckedKind::LeftBetweenDoors { off: 1.0 };
+    let reported = bare_events([fork(), door(1.0), aside(), fork()]);
+    let faults = |events: &RunEvents| {
+        events.own_faults().into_iter().map(|(event, _)| event).collect::<Vec<_>>()
+    };
+    assert_eq!(faults(&reported), [2]);
+    assert_eq!(faults(&bare_events([fork(), door(1.0), fork()])), [1]);
+    assert!(faults(&bare_events([fork(), door(0.1), fork()])).is_empty());
+    assert_eq!(reported.without_excursions().events, reported.events);
+}
+
 /// An arrival with two or three doors that sees the marker along one.
 fn pointing(degree: u32, door: u32) -> CheckedKind {
     bare_arrival(degree, Sighting::Pointing(Door(door)))

@@ -3,13 +3,14 @@ use proptest::prelude::*;
 use super::*;
 use crate::{
     aid::{Action, AidAction, markers::MOVABLE},
+    ambiguity::Comparison,
     any_graph::{Class, any_graph},
     folding::FoldedTrail,
     mapping::{MappingEvent, MappingMethod, MovableEvent, SafeguardEvent},
     marker::{MARKERS, NoMarker, Undirected},
     percept::{Door, MarkerSet, Percept, Sighting},
     trace::{Trace, TraceEventKind},
-    visits::{VisitAlternative, VisitSet, VisitWay},
+    visits::{ChosenAlternative, VisitAlternative, VisitSet, VisitWay},
     world::GraphWorld,
 };
 
@@ -108,6 +109,163 @@ fn the_run_with_a_marker_that_is_carried_is_that_of_the_page() {
         PerceivedRun::new(MOVABLE.into(), &dropped.unwrap()),
         Err(NotProved::Action(AidAction::DropMarker(1)))
     );
+}
+
+#[test]
+fn each_claim_is_written_with_what_shows_it() {
+    let walks = || vec![WalkPair { from: [Dart(1), Dart(3)], doors: vec![Door(2), Door(0)] }];
+    let steps = || vec![UnionStep::Mark([0, 2])];
+    let chosen = |number, door| ChosenAlternative { number, door };
+    for (claim, lines) in [
+        (Claim::Determined { from: Dart(1), steps: steps() }, "determined\nfrom 1\nmark 0 2"),
+        (
+            Claim::Unexplained { steps: steps(), contradiction: WalkContradiction::Door(3) },
+            "unexplained\nmark 0 2\ncontradiction door 3",
+        ),
+        (Claim::Conforms { from: Dart(4) }, "conforms\nfrom 4"),
+        (Claim::Diverges { from: None }, "diverges\nfrom any"),
+        (Claim::Diverges { from: Some(vec![Dart(0), Dart(2)]) }, "diverges\nfrom 0 2"),
+        (
+            Claim::Fits { from: Dart(2), choice: vec![chosen(1, None), chosen(0, Some(Door(2)))] },
+            "fits\nfrom 2\nchoose 1\nchoose 0 2",
+        ),
+        (Claim::Misfits { from: Some(vec![Dart(5)]) }, "misfits\nfrom 5"),
+        (
+            Claim::Impossible {
+                lines: vec![ChoiceLine::Choose(chosen(0, None)), ChoiceLine::BackElsewhere],
+            },
+            "impossible\nchoose 0\ncontradiction back",
+        ),
+        (
+            Claim::Indistinguishable { pairs: vec![[Dart(0), Dart(1)], [Dart(2), Dart(3)]] },
+            "indistinguishable\npair 0 1\npair 2 3",
+        ),
+        (Claim::Distinguishable { walks: walks() }, "distinguishable\nfrom 1 3\ndoor 2\ndoor 0"),
+        (Claim::NotIsomorphic { walks: walks() }, "not-isomorphic\nfrom 1 3\ndoor 2\ndoor 0"),
+        (Claim::Isomorphic { images: vec![Dart(1), Dart(0)] }, "isomorphic\nimage 0 1\nimage 1 0"),
+    ] {
+        assert_eq!(claim.to_string(), format!("claim {lines}\nend\n"));
+    }
+}
+
+/// The poses of a bisimulation: equal doors lead from each pair to another one.
+#[test]
+fn rings_that_a_marker_does_not_distinguish_have_a_bisimulation() {
+    let ring = EmbeddedGraph::cycle(3);
+    let comparison = Comparison::new(NoMarker, (&ring, Dart(0)), (&ring, Dart(0)));
+    let poses = [Dart(0), Dart(2)];
+    let Claim::Indistinguishable { pairs } = Claim::indistinguishable(&comparison, poses) else {
+        panic!()
+    };
+    assert_eq!(pairs[0], poses);
+    for pair in &pairs {
+        for door in [0, 1].map(Door) {
+            let next = pair.map(|pose| ring.opposite(ring.behind(pose, door)));
+            assert!(pairs.contains(&next), "{next:?}");
+        }
+    }
+}
+
+/// A mark on an edge is seen by a robot that comes over it; other markers lie at their vertex.
+#[test]
+fn a_robot_that_turns_back_sees_the_same_vertex_and_another_edge() {
+    let seen = |sighting| {
+        let percept = Percept { degree: 2, sighting };
+        let alternative = Some(VisitAlternative { percept, door: Some(Door(1)) });
+        VisitSet::new([alternative], VisitWay::Through)
+    };
+    let proved = |again, marker| {
+        let visits = [seen(Sighting::Nothing), VisitSet::turned_back(), seen(again)];
+        Proof::of_impossible_visits(&visits, 2, marker).map(|_| ())
+    };
+    let possible = Err(NotProved::PossibleInSomeWorld);
+    assert_eq!(proved(Sighting::Passed, MarkerKind::UndirectedEdge), possible);
+    assert_eq!(proved(Sighting::PassedAlong, MarkerKind::DirectedEdge), possible);
+    assert_eq!(proved(Sighting::Pointing(Door(0)), Directional), Ok(()));
+    assert_eq!(proved(Sighting::Lying(1), Undirected), Ok(()));
+    assert_eq!(proved(Sighting::Nothing, Directional), possible);
+}
+
+#[test]
+fn a_robot_that_turns_back_twice_goes_on() {
+    let seen = |degree| {
+        let percept = Percept { degree, sighting: Sighting::Nothing };
+        let alternative = Some(VisitAlternative { percept, door: Some(Door(1)) });
+        VisitSet::new([alternative], VisitWay::Through)
+    };
+    let proved = |turns: usize| {
+        let turned = vec![VisitSet::turned_back(); turns];
+        let visits = [vec![seen(3)], turned, vec![seen(4)]].concat();
+        Proof::of_impossible_visits(&visits, turns + 1, NoMarker).map(|_| ())
+    };
+    let possible = Err(NotProved::PossibleInSomeWorld);
+    assert_eq!([0, 1, 2, 3].map(proved), [possible.clone(), Ok(()), possible, Ok(())]);
+}
+
+#[test]
+fn what_is_too_large_or_seen_of_another_aid_has_no_proof() {
+    let none = VisitSet::new([None], VisitWay::Through);
+    let proved = |count| {
+        let visits = vec![none.clone(); count];
+        Proof::of_impossible_visits(&visits, count, NoMarker).map(|_| ())
+    };
+    assert_eq!(proved(1000), Err(NotProved::PossibleInSomeWorld));
+    assert_eq!(proved(1001), Err(NotProved::TooManyChoices));
+    let seen = |degree| Percept { degree, sighting: Sighting::Nothing };
+    let large = Some(VisitAlternative { percept: seen(u32::MAX), door: Some(Door(0)) });
+    let visits = [VisitSet::new([large], VisitWay::Through)];
+    let proof = Proof::of_impossible_visits(&visits, 0, NoMarker).map(|_| ());
+    assert_eq!(proof, Err(NotProved::TooManyDarts));
+    let most = u32::try_from(crate::folding::MAX_DARTS).unwrap();
+    assert!(PerceivedWalk::new(&[seen(most)], &[]).is_ok());
+    assert_eq!(
+        PerceivedWalk::new(&[seen(most), seen(1)], &[Door(0)]),
+        Err(NotProved::TooManyDarts)
+    );
+    let sighting = Sighting::Lying(3);
+    let three = Trace::new([TraceEventKind::Percept(Percept { degree: 2, sighting })]).unwrap();
+    let run = PerceivedRun::new(MOVABLE.into(), &three);
+    assert_eq!(run, Err(NotProved::Sighting(sighting)));
+}
+
+#[test]
+fn a_vertex_has_a_door() {
+    let walk =
+        PerceivedWalk::new(&[Percept { degree: 0, sighting: Sighting::Nothing }], &[]).unwrap();
+    let contradiction = WalkContradiction::Percept(0);
+    assert_eq!(fold_walk(&walk, NoMarker).end, WalkEnd::Contradiction { visit: 0, contradiction });
+}
+
+#[test]
+fn a_walk_that_no_world_gives_is_cut_where_it_contradicts_itself() {
+    let seen = |degree| Percept { degree, sighting: Sighting::Nothing };
+    // It goes back, and finds another number of doors; what follows does not matter.
+    let percepts = [2, 1, 3, 2].map(seen);
+    let walk = PerceivedWalk::new(&percepts, &[Door(1), Door(0), Door(1)]).unwrap();
+    let (cut, claim) = unexplained(&walk, NoMarker).unwrap();
+    assert_eq!((cut.percepts(), cut.doors()), (&percepts[..3], &[Door(1), Door(0)][..]));
+    assert!(matches!(claim, Claim::Unexplained { .. }));
+    let ring = EmbeddedGraph::cycle(3);
+    let walk = PerceivedWalk::in_world((&ring, Dart(0)), NoMarker, Dart(0), &[Door(1), Door(1)]);
+    assert_eq!(unexplained(&walk, NoMarker), None);
+}
+
+#[test]
+fn a_walk_determines_its_world_with_a_directional_marker_and_no_open_door() {
+    let open = |doors| NotProved::Open(doors).to_string();
+    assert_eq!(open(1), "the walk does not determine its world: 1 door was never followed");
+    assert_eq!(open(2), "the walk does not determine its world: 2 doors were never followed");
+    let chain = EmbeddedGraph::chain(1);
+    let walk =
+        |marker, doors: &[Door]| PerceivedWalk::in_world((&chain, Dart(0)), marker, Dart(0), doors);
+    let [there, back] = [1, 2].map(|moves| vec![Door(0); moves]);
+    let determined = |marker, doors: &[Door]| {
+        Claim::determined(&walk(marker, doors), marker, Dart(0)).map(|_| ())
+    };
+    assert_eq!(determined(Directional, &back), Ok(()));
+    assert_eq!(determined(NoMarker, &back), Err(NotProved::OtherMarker));
+    assert_eq!(determined(Directional, &there), Ok(()));
+    assert_eq!(determined(Directional, &[]), Err(NotProved::Open(1)));
 }
 
 #[test]

@@ -132,6 +132,23 @@ fn a_visit_that_may_be_none_leaves_the_robot_on_its_edge() {
 }
 
 #[test]
+fn a_door_that_does_not_exist_leads_nowhere() {
+    let graph = EmbeddedGraph::cycle(3);
+    let visit = |door| VisitSet::new([unmarked(2, door)], VisitWay::Through);
+    let poses = |visit: &VisitSet| {
+        let visits = std::slice::from_ref(visit);
+        states_after(&graph, &NoMarker, &anywhere(&graph, &NoMarker), visits)[0].len()
+    };
+    assert_eq!([0, 1, 2, u32::MAX].map(|door| poses(&visit(door))), [6, 6, 0, 0]);
+    let open = Some(VisitAlternative { door: None, ..unmarked(2, 0).unwrap() });
+    let all = VisitSet::new([unmarked(2, 2), unmarked(2, 1), None, open], VisitWay::Back);
+    let existing = all.with_existing_doors();
+    assert_eq!(existing, VisitSet::new([None, open, unmarked(2, 1)], VisitWay::Back));
+    assert!(visit(1).is_certain() && !existing.is_certain());
+    assert!(!VisitSet::new([], VisitWay::Through).is_certain());
+}
+
+#[test]
 fn turning_back_contradicts_a_vertex_that_has_another_degree_then() {
     let visit = |degree, door| VisitSet::new([unmarked(degree, door)], VisitWay::Through);
     let turned = VisitSet::turned_back;
@@ -148,6 +165,33 @@ fn turning_back_contradicts_a_vertex_that_has_another_degree_then() {
     assert_eq!(impossible(&[visit(1, 0), visit(3, 0), visit(2, 1)]), Some(2));
     assert_eq!(impossible(&[VisitSet::new([], VisitWay::Through)]), Some(0));
     assert_eq!(impossible(&[]), None);
+}
+
+/// By whatever door it left a dead end, it is at the fork before it again.
+#[test]
+fn a_door_that_is_not_known_is_any_door() {
+    let visit = |degree, door| VisitSet::new([unmarked(degree, door)], VisitWay::Through);
+    let open = |degree| {
+        let open = VisitAlternative { door: None, ..unmarked(degree, 0).unwrap() };
+        VisitSet::new([Some(open)], VisitWay::Through)
+    };
+    let found = |visits: &[VisitSet]| explanation(visits, false, 1000, &());
+    let impossible = Explanation::Impossible { visit: 2 };
+    assert_eq!(found(&[visit(3, 1), open(1), visit(4, 1)]), impossible);
+    assert!(matches!(found(&[visit(3, 1), open(1), visit(3, 1)]), Explanation::Explained(_)));
+    assert!(matches!(found(&[visit(3, 1), open(2), open(4)]), Explanation::Explained(_)));
+    // So it is to an algorithm.
+    let graph = lollipop();
+    let run = explored_by(MappingAlgorithm::Folding, &graph, Dart(0));
+    let open = |&percept: &Percept| {
+        VisitSet::new([Some(VisitAlternative { percept, door: None })], VisitWay::Through)
+    };
+    let visits: Vec<_> = run.percepts().iter().map(open).collect();
+    let by_folding = |watch: &dyn Watch| {
+        explain_by_algorithm(MappingAlgorithm::Folding, &visits, None, BOUNDS, watch)
+    };
+    assert!(matches!(by_folding(&()), Explanation::Explained(_)));
+    assert_eq!(by_folding(&StopAt::new(1)), Explanation::NotKnown);
 }
 
 #[test]
@@ -343,8 +387,24 @@ proptest! {
         let fits = states_after(&graph, &Directional, &starts, &visits).last().is_none_or(|last| !last.is_empty());
         let found = choice_in_world(&graph, &Directional, &starts, &visits);
         prop_assert_eq!(found.is_some(), fits);
+        // What is left of a visit are the alternatives with which alone the others fit.
+        let left = alternatives_left(&graph, &Directional, &starts, &visits);
+        for (number, visit) in visits.iter().enumerate() {
+            let with = |&&alternative: &&_| {
+                let mut visits = visits.clone();
+                visits[number] = VisitSet::new([alternative], visit.way());
+                !states_after(&graph, &Directional, &starts, &visits).last().unwrap().is_empty()
+            };
+            let expected: Vec<_> = visit.alternatives().iter().filter(with).copied().collect();
+            prop_assert_eq!(&left[number], &expected, "visit {}", number);
+        }
         if let Some((start, choice)) = found {
             prop_assert!(starts.contains(&start));
+            // A door is chosen where the alternative has none, and the robot leaves.
+            for (index, (visit, chosen)) in visits.iter().zip(&choice).enumerate() {
+                let is_open = visit.alternatives()[chosen.number].is_some_and(|it| it.door.is_none());
+                prop_assert_eq!(chosen.door.is_some(), is_open && index + 1 < visits.len());
+            }
             let chosen = visits.iter().zip(choice).map(|(visit, ChosenAlternative { number, door })| {
                 // At the last visit the robot stays; it could take any door.
                 let with_door = |known: VisitAlternative| VisitAlternative {
@@ -378,21 +438,6 @@ proptest! {
             if marked { drives(&graph, Directional, *start, choice) } else { drives(&graph, NoMarker, *start, choice) }
         });
         prop_assert_eq!(starts.iter().any(drives), !after(&visits).is_empty());
-        // What is left of a visit are the alternatives with which alone the others fit.
-        let left = if marked {
-            alternatives_left(&graph, &Directional, &starts, &visits)
-        } else {
-            alternatives_left(&graph, &NoMarker, &starts, &visits)
-        };
-        for (number, visit) in visits.iter().enumerate() {
-            let with = |&&alternative: &&_| {
-                let mut visits = visits.clone();
-                visits[number] = VisitSet::new([alternative], visit.way());
-                !after(&visits).is_empty()
-            };
-            let expected: Vec<_> = visit.alternatives().iter().filter(with).copied().collect();
-            prop_assert_eq!(&left[number], &expected, "visit {}", number);
-        }
     }
 
     #[test]

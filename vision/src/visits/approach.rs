@@ -189,7 +189,9 @@ impl<S: Copy + Default> ApproachRule<S> {
             VisitExit { at, direction, off }
         });
         let (shape, sighting) = (Some(shape), Some(percept.sighting));
-        log.push(Visit { arms, exit, shape, sighting, doubt: None, ..undecided }, |_| *driven);
+        let visit = Visit { arms, exit, shape, sighting, doubt: None, ..undecided };
+        let goes_back = visit.percept().door == Some(0);
+        log.push(Visit { goes_back, ..visit }, |_| *driven);
         self.way = *onwards;
     }
 }
@@ -270,8 +272,10 @@ fn entry_door(place: &SeenPlace, is_certain: bool, robot: &Odometry) -> f64 {
 
 #[cfg(test)]
 mod tests {
-
-    use toposlam_model::driving::scene::{CentreLine, HallwayStatus, HallwayView, Reason};
+    use toposlam_model::{
+        driving::scene::{CentreLine, HallwayStatus, HallwayView, Reason},
+        percept::{Door, Sighting},
+    };
 
     use super::*;
     use crate::visits::{VisitPercept, Visits};
@@ -463,6 +467,114 @@ mod tests {
         assert_eq!(seen.len(), 1, "{seen:?}");
         assert_eq!(seen[0].alternatives(), [Some(seen[0].percept())]);
         assert_eq!(events(&places, false), (vec![Some(1)], vec![]));
+    }
+
+    /// The visits do not depend on the direction in which odometry begins.
+    #[test]
+    fn a_robot_that_begins_in_another_direction_has_the_same_visits() {
+        let away = hallway([0.0, 1.0], FRAC_PI_2);
+        let turned_back = hallway([-0.7, 0.0], PI);
+        let back = hallway([-1.0, 0.0], PI);
+        let round = [hallway([0.0, 2.0], FRAC_PI_2), hallway([0.0, 1.9], -FRAC_PI_2)];
+        let maybe: Vec<_> = visit().into_iter().map(possible).collect();
+        for way in [
+            [visit(), vec![away.clone()]].concat(),
+            [visit(), vec![back.clone()]].concat(),
+            [visit()[..3].to_vec(), vec![turned_back]].concat(),
+            [visit(), round.to_vec()].concat(),
+            [visit()[..2].to_vec(), vec![hallway([0.7, 0.0], 0.0)]].concat(),
+            [maybe.clone(), vec![away]].concat(),
+            [maybe, vec![back]].concat(),
+        ] {
+            let seen = |turn: f64| {
+                let (sine, cosine) = turn.sin_cos();
+                let turned = way.iter().map(|(place, [x, y], heading)| {
+                    let position = [cosine * x - sine * y, sine * x + cosine * y];
+                    (place.clone(), position, wrapped(heading + turn))
+                });
+                let log = visits(&turned.collect::<Vec<_>>(), false);
+                let visit = |visit: &Visit<usize>| {
+                    (visit.at, visit.alternatives(), visit.goes_back, visit.turned_back.clone())
+                };
+                (log.visits.iter().map(visit).collect::<Vec<_>>(), log.turned_back)
+            };
+            for turn in [0.9, 2.0, -1.2, -2.6] {
+                assert_eq!(seen(turn), seen(0.0), "{turn}");
+            }
+        }
+    }
+
+    /// A false dead end seems to open to the right.
+    #[test]
+    fn a_robot_enters_a_possible_junction_by_the_door_behind_it_whatever_seems_to_be_a_door() {
+        for (turn, opens) in [(0.0, -FRAC_PI_2), (0.0, FRAC_PI_2), (0.0, 0.0), (2.0, -FRAC_PI_2)] {
+            let through = [0.1, 0.0];
+            let doors = vec![CentreLine { through, direction: opens }];
+            let view = JunctionView { doors, turning_point: through, confidence: 0.5 };
+            let mut robot = Visits::by_camera(false);
+            let scene = Scene { place: Place::Junction(view), marker: None };
+            robot.add_frame(0, &scene, &Odometry { position: [0.0; 2], heading: turn });
+            let arms = robot.status().unwrap().arms;
+            assert!(
+                wrapped(arms[0].direction - turn - PI).abs() < 1e-9,
+                "{turn} {opens}: {arms:?}"
+            );
+            assert!(arms[0].is_certain() && !arms[1].is_certain());
+        }
+    }
+
+    #[test]
+    fn a_junction_that_is_seen_from_another_one_ends_the_visit_of_that() {
+        // The next one is 4 m to the left, and no image shows the hallway between them.
+        let next = [1.0, 3.2, 3.5, 3.8].map(|y| (junction(4.0 - y), [0.0, y], FRAC_PI_2));
+        let places = [visit(), next.to_vec()].concat();
+        assert_eq!(events(&places, false), (vec![Some(1), None], vec![]));
+        // The same place half a metre off is no other one.
+        let near = (junction(0.7), [-0.2, 0.0], 0.0);
+        let away = hallway([0.0, 1.0], FRAC_PI_2);
+        assert_eq!(visits(&[visit(), vec![near, away]].concat(), false).visits.len(), 1);
+    }
+
+    #[test]
+    fn a_junction_is_visited_where_its_last_image_has_it_and_has_arms_once_two_images_agree() {
+        let status = |places: &[Seen]| {
+            let mut robot = Visits::by_camera(false);
+            for (number, (place, position, heading)) in places.iter().enumerate() {
+                let scene = Scene { place: place.clone(), marker: None };
+                robot.add_frame(
+                    number,
+                    &scene,
+                    &Odometry { position: *position, heading: *heading },
+                );
+            }
+            robot.status().map(|place| place.arms.len())
+        };
+        let at = |ahead: f64, x: f64| (junction(ahead), [x, 0.0], 0.0);
+        assert_eq!(status(&[at(0.8, -0.8), at(0.2, -0.2)]), Some(2));
+        // It is 40 cm farther on than it seemed.
+        assert_eq!(status(&[at(0.8, -0.8), at(0.6, -0.2)]), None);
+        assert_eq!(status(&[at(0.2, -0.2)]), Some(0));
+    }
+
+    /// A junction that is still ahead looks like a hallway, in which its marker is visible.
+    #[test]
+    fn the_marker_of_a_junction_ahead_is_seen_from_the_hallway_before_it() {
+        let sighting = |is_before: bool| {
+            let mut robot = Visits::by_camera(false);
+            let marker = Some(MarkerView { position: [0.4, 0.3], axis: FRAC_PI_2, door: None });
+            let ahead = (hallway([-0.6, 0.0], 0.0), marker);
+            let beside = (hallway([-0.1, 0.0], 0.0), marker);
+            let mut seen: Vec<_> = visit().into_iter().map(|seen| (seen, None)).collect();
+            seen.insert(if is_before { 2 } else { 4 }, if is_before { ahead } else { beside });
+            seen.push((hallway([0.0, 1.0], FRAC_PI_2), None));
+            for (number, ((place, position, heading), marker)) in seen.into_iter().enumerate() {
+                let scene = Scene { place, marker };
+                robot.add_frame(number, &scene, &Odometry { position, heading });
+            }
+            robot.finish().visits[0].sighting
+        };
+        assert_eq!(sighting(true), Some(Sighting::Pointing(Door(1))));
+        assert_eq!(sighting(false), Some(Sighting::Nothing));
     }
 
     #[test]

@@ -89,5 +89,11 @@ mod tests {
         assert_eq!(fault(&[2.0, 6.0, 5.0, 2.0], &[3, 3]), Some(NetworkFault::Wide));
         assert_eq!(fault(&[2.0], &[5, 6, 3, 5, 3]), Some(NetworkFault::ManyDoors));
         assert_eq!(fault(&[], &[]), None);
+        // At the limits: as wide as a corridor may be, a fifth of the way, and three places, more than a third of all.
+        assert_eq!(fault(&[4.0; 3], &[]), None);
+        assert_eq!(fault(&[6.0, 2.0, 2.0, 2.0, 2.0], &[]), None);
+        assert_eq!(fault(&[], &[5, 5]), None);
+        assert_eq!(fault(&[], &[5, 5, 5, 3, 3, 3, 3, 3]), Some(NetworkFault::ManyDoors));
+        assert_eq!(fault(&[], &[5, 5, 5, 3, 3, 3, 3, 3, 3]), None);
     }
 }

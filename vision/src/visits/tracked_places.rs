@@ -161,3 +161,162 @@ fn common_arms<'v>(
     let arm = |(direction, seen, _)| TrackedArm { direction, part: part(seen) };
     groups.into_iter().map(arm).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+    use crate::place::PlaceArm;
+
+    const FORK: [f64; 3] = [PI, FRAC_PI_2, 0.0];
+    const CORNER: [f64; 2] = [PI, FRAC_PI_2];
+
+    fn seen(x: f64, clearance: f64, arms: &[f64]) -> SeenPlace {
+        let arms = arms.iter().map(|&direction| PlaceArm::certain(direction)).collect();
+        SeenPlace { centre: Point2::new(x, 0.0), clearance, arms }
+    }
+
+    /// The last three views decide.
+    fn tracked() -> TrackedPlaces {
+        TrackedPlaces::new(VisitParams { views: 3, ..VisitParams::DEFAULT })
+    }
+
+    /// The places after views of a robot at the origin, one in each metre of its way.
+    fn after(views: &[&[SeenPlace]]) -> TrackedPlaces {
+        let mut places = tracked();
+        for (way, view) in views.iter().enumerate() {
+            places.add(view.iter(), Point2::origin(), way as f64);
+        }
+        places
+    }
+
+    #[track_caller]
+    fn assert_near(one: f64, other: f64) {
+        assert!((one - other).abs() < 1e-9, "{one} {other}");
+    }
+
+    #[test]
+    fn a_place_is_in_the_mean_of_the_last_views_and_a_junction_is_not_moved_by_a_corner() {
+        let [first, second, third] =
+            [(0.0, 1.0), (0.4, 1.2), (0.8, 1.4)].map(|(x, clearance)| [seen(x, clearance, &FORK)]);
+        let places = after(&[&first, &second, &third]);
+        let [place] = &places.places[..] else { panic!("{places:?}") };
+        assert_near(place.centre.x, 0.4);
+        assert_near(place.clearance, 1.2);
+        // Of four views the last one counts as one of four, and so does a fifth.
+        let fifth = [seen(1.2, 1.2, &FORK)];
+        let places = after(&[&first, &second, &third, &fifth, &fifth]);
+        assert_near(places.places[0].centre.x, 0.6 + 0.25 * 0.6);
+        // What was taken for a corner is where it was seen to be a junction, and stays there.
+        let [corner, fork] = [[seen(0.0, 1.0, &CORNER)], [seen(1.0, 2.0, &FORK)]];
+        for views in [&[&corner[..], &fork][..], &[&corner, &fork, &corner]] {
+            let places = after(views);
+            assert_near(places.places[0].centre.x, 1.0);
+            assert_near(places.places[0].clearance, 2.0);
+        }
+        let corners = after(&[&corner, &[seen(1.0, 2.0, &CORNER)]]);
+        assert_near(corners.places[0].centre.x, 0.5);
+    }
+
+    #[test]
+    fn places_nearer_than_their_extent_are_one() {
+        let here = seen(0.0, 1.0, &FORK);
+        // 1.5 m, or three fifths of the distance to the wall.
+        for (apart, clearance, count) in
+            [(1.4, 1.0, 1), (1.6, 1.0, 2), (1.7, 3.0, 1), (1.9, 3.0, 2)]
+        {
+            let places = after(&[
+                &[SeenPlace { clearance, ..here.clone() }],
+                &[seen(apart, clearance, &FORK)],
+            ]);
+            assert_eq!(places.places.len(), count, "{apart} {clearance}");
+        }
+        let two = after(&[&[here, seen(2.0, 1.0, &FORK)]]);
+        let x_at = |x| two.at(Point2::new(x, 0.0)).map(|place| place.centre.x);
+        assert_eq!([0.9, 1.1, -1.6].map(x_at), [Some(0.0), Some(2.0), None]);
+        let x_within =
+            |x, within| two.nearest(Point2::new(x, 0.0), |_| within).map(|place| place.centre.x);
+        assert_eq!(x_within(0.9, 5.0), Some(0.0));
+        assert_eq!(x_within(1.1, 5.0), Some(2.0));
+        assert_eq!(x_within(1.1, 0.8), None);
+    }
+
+    #[test]
+    fn a_place_is_seen_from_nearby_and_forgotten_after_a_long_way() {
+        let VisitParams { range, memory, .. } = VisitParams::DEFAULT;
+        for (off, count) in [(range + 0.9, 1), (range + 1.1, 0)] {
+            assert_eq!(after(&[&[seen(off, 1.0, &FORK)]]).places.len(), count, "{off}");
+        }
+        let mut places = after(&[&[seen(0.0, 1.0, &FORK)]]);
+        for (way, count) in [(memory - 1.0, 1), (memory, 0)] {
+            places.add([].iter(), Point2::new(20.0, 0.0), way);
+            assert_eq!(places.places.len(), count, "{way}");
+        }
+    }
+
+    #[test]
+    fn an_arm_counts_as_often_as_views_from_nearby_show_it() {
+        let fork = [seen(0.0, 1.0, &FORK)];
+        let parts = |places: &TrackedPlaces| {
+            let params = &places.params;
+            places.places[0].arms(params).iter().map(|arm| arm.part).collect::<Vec<_>>()
+        };
+        assert_eq!(parts(&after(&[&fork, &[]])), [0.5; 3]);
+        // The last three views.
+        assert_eq!(parts(&after(&[&fork, &[], &fork, &fork])), [2.0 / 3.0; 3]);
+        let elsewhere = |x: f64, way: f64| {
+            let mut places = after(&[&fork]);
+            places.add([].iter(), Point2::new(x, 0.0), way);
+            parts(&places)
+        };
+        assert_eq!(elsewhere(4.9, 1.0), [0.5; 3]);
+        assert_eq!(elsewhere(5.1, 1.0), [1.0; 3]);
+        // While the robot stands still no view misses it.
+        assert_eq!(elsewhere(0.0, 0.0), [1.0; 3]);
+        // What no view shows any more is no place at which a robot may be.
+        let gone = after(&[&fork, &[], &[], &[]]);
+        assert!(gone.nearest(Point2::origin(), |_| 1.0).is_none());
+    }
+
+    #[test]
+    fn arms_of_one_direction_are_one_arm_in_their_mean_direction() {
+        let arms = |views: &[&[f64]]| common_arms(views.iter().copied(), &VisitParams::DEFAULT);
+        let [behind, left] = arms(&[&[PI - 0.3, 1.0], &[-PI + 0.1, 1.3], &[PI - 0.1]])[..] else {
+            panic!()
+        };
+        assert_near(wrapped(behind.direction - (PI - 0.1)), 0.0);
+        assert_near(left.direction, 1.15);
+        assert_eq!((behind.part, left.part), (1.0, 2.0 / 3.0));
+        // Two arms of one view that are near to each other are seen once.
+        let [one] = arms(&[&[0.0, 0.2], &[]])[..] else { panic!() };
+        assert_near(one.direction, 0.1);
+        assert_near(one.part, 0.5);
+        // An arm between two others is the nearer one.
+        let [_, other] = arms(&[&[0.0, 1.0], &[0.55]])[..] else { panic!() };
+        assert_near(other.direction, 0.775);
+        assert!(arms(&[]).is_empty());
+    }
+
+    #[test]
+    fn a_junction_is_shown_by_enough_of_the_views_and_a_corner_before_it_misses_no_arm() {
+        let [corner, fork] = [[seen(0.0, 1.0, &CORNER)], [seen(0.0, 1.0, &FORK)]];
+        let shows = |views: &[&[SeenPlace]]| {
+            let places = after(views);
+            places.places[0].shows_meet(&places.params)
+        };
+        assert!(!shows(&[&fork]) && shows(&[&fork, &fork]));
+        // Two of three views.
+        assert!(shows(&[&fork, &fork, &corner]) && !shows(&[&fork, &corner, &corner]));
+        // Two of four are too few.
+        let mut usual = TrackedPlaces::new(VisitParams::DEFAULT);
+        for (way, view) in [&fork, &fork, &corner, &corner].into_iter().enumerate() {
+            usual.add(view.iter(), Point2::origin(), way as f64);
+        }
+        assert!(!usual.places[0].shows_meet(&usual.params));
+        let places = after(&[&corner, &fork, &corner]);
+        let parts = |arms: Vec<TrackedArm>| arms.iter().map(|arm| arm.part).collect::<Vec<_>>();
+        assert_eq!(parts(places.places[0].arms_of_meet(&places.params)), [0.5; 3]);
+        assert_eq!(parts(places.places[0].arms(&places.params)), [1.0, 1.0, 1.0 / 3.0]);
+    }
+}

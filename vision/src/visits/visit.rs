@@ -247,6 +247,47 @@ mod tests {
     }
 
     #[test]
+    fn a_hallway_turns_by_the_angle_from_where_a_robot_left_to_how_it_came_in() {
+        let mut log = VisitLog::default();
+        // It left to the north, and comes in from the west: it drives east.
+        let mut first = Visit { doubt: None, ..visit(None) };
+        first.arms[1].certainty = Certainty::Certain;
+        first.exit = Some(VisitExit { at: (), direction: 1.5, off: None });
+        let second = Visit { doubt: None, ..visit(None) };
+        log.push(first, |_| panic!("there is no hallway before"));
+        log.push(second, |before| Some(before.arms.len() as f64));
+        let hallway = log.visits[1].hallway.unwrap();
+        assert_eq!((hallway.length, hallway.turn), (4.0, Some(-FRAC_PI_2)));
+    }
+
+    #[test]
+    fn what_leaves_a_visit_undecided_has_a_name() {
+        use UndecidedCause::{Unclear, UnseenArm, UnseenWay};
+        let names = [Unclear, UnseenArm, UnseenWay].map(UndecidedCause::name);
+        assert_eq!(names, ["unclear", "unseen-arm", "unseen-way"]);
+    }
+
+    #[test]
+    fn a_door_is_counted_clockwise_from_where_the_robot_came_in() {
+        let (north, south) = (FRAC_PI_2, -FRAC_PI_2);
+        let fork = |came: f64, left: f64| {
+            let arms = [PI, north, 0.0, south].map(PlaceArm::certain).to_vec();
+            let exit = Some(VisitExit { at: (), direction: left, off: None });
+            Visit { arms, exit, came: Some(came), ..visit(None) }.percept()
+        };
+        for (came, left, door) in [
+            (PI, PI, 0),
+            (PI, north, 1),
+            (PI, south, 3),
+            (0.0, south, 1),
+            (south, PI, 1),
+            (south, 0.0, 3),
+        ] {
+            assert_eq!(fork(came, left), VisitPercept { degree: 4, door: Some(door) });
+        }
+    }
+
+    #[test]
     fn a_percept_by_whose_doors_a_robot_that_went_through_went_back_is_none() {
         // Without the possible arm in the north, the arm nearest to where the robot left is the one by which it came in.
         let left = VisitExit { at: (), direction: 2.2, off: None };

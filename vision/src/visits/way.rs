@@ -110,7 +110,61 @@ pub(super) fn distance_to_piece(point: Point2<f64>, [from, to]: [Point2<f64>; 2]
 mod tests {
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
+    use nalgebra::Isometry2;
+    use toposlam_model::driving::odometry::Odometry;
+
     use super::*;
+    use crate::place::ViewSector;
+
+    /// Where a way along a line becomes too long in a direction in which a scanner that sees the half ahead of it does not look.
+    fn unseen(points: &[f64]) -> Vec<bool> {
+        let [along_x, along_y] = [0.0, FRAC_PI_2].map(|heading| unseen_along(points, heading));
+        assert_eq!(along_x, along_y);
+        along_x
+    }
+
+    /// The same along a way in this direction.
+    fn unseen_along(points: &[f64], heading: f64) -> Vec<bool> {
+        let mut unseen = UnseenWay::default();
+        let view = |&along: &f64| PlaceView {
+            robot: Odometry { position: [along * heading.cos(), along * heading.sin()], heading },
+            odometry_from_map: Isometry2::identity(),
+            places: Vec::new(),
+            possible_places: Vec::new(),
+            facts: None,
+            sector: ViewSector { first: -FRAC_PI_2, angle: PI },
+            width: None,
+            scene: None,
+        };
+        points.iter().map(|x| unseen.add(&view(x), &VisitParams::DEFAULT)).collect()
+    }
+
+    #[test]
+    fn two_metres_backwards_are_a_way_that_a_scanner_does_not_see() {
+        let [no, yes] = [false, true];
+        assert_eq!(unseen(&[0.0, -0.5, -1.0, -1.5, -2.0, -2.5]), [no, no, no, no, yes, no]);
+        // In small steps, too.
+        assert_eq!(
+            unseen(&[0.0, -0.4, -0.8, -1.2, -1.6, -2.0, -2.4]).iter().filter(|&&is| is).count(),
+            1
+        );
+        assert!(!unseen(&[0.0, 1.0, 2.0, 3.0]).contains(&yes));
+        // What it then sees, it sees.
+        assert!(!unseen(&[0.0, -1.5, -0.9, -2.4]).contains(&yes));
+        let twice = [0.0, -2.0, -1.0, -3.0];
+        assert_eq!(unseen(&twice), [no, yes, no, yes]);
+    }
+
+    #[test]
+    fn a_point_is_as_far_from_a_piece_of_a_way_as_from_its_nearest_point() {
+        let piece = [[1.0, 1.0], [4.0, 5.0]].map(Point2::from);
+        let off = |x, y| distance_to_piece(Point2::new(x, y), piece);
+        // Beside the middle, and before and behind the ends.
+        assert!((off(2.5 + 4.0, 3.0 - 3.0) - 5.0).abs() < 1e-9);
+        assert!((off(1.0 - 3.0, 1.0 - 4.0) - 5.0).abs() < 1e-9);
+        assert!((off(4.0, 7.0) - 2.0).abs() < 1e-9);
+        assert!((distance_to_piece(Point2::new(1.0, 3.0), [piece[0]; 2]) - 2.0).abs() < 1e-9);
+    }
 
     /// The bends of a way along these points, in steps of half a metre.
     fn bends(corners: &[[f64; 2]]) -> Vec<PassedBend<()>> {
