@@ -138,6 +138,8 @@ pub fn run<'p>(
 ) -> Run<'p> {
     let &RunSettings { method, dart_bound, .. } = settings;
     let monitor = GroundTruthMonitor::new(plan, method.algorithm().aid(), facing);
+    let monitor =
+        if matches!(sensor, RobotSensor::Laser(_)) { monitor.by_scans() } else { monitor };
     let mut explorer = AnyExplorer::new(robot, sensor, (monitor, observer));
     let (mapping, mapped) = explorer.map(settings);
     let (moves, is_at_obstacle) = (explorer.moves(), explorer.is_at_obstacle());

@@ -21,9 +21,9 @@ fn conform(scratch: &Scratch, log: &str) -> Value {
     objects(&stdout(&output)).pop().unwrap_or_else(|| panic!("{output:?}"))
 }
 
-/// Whether a remark is among those of a report, after the reason for the verdict.
-fn has_later_remark(report: &Value, remark: &str) -> bool {
-    report["remarks"].as_array().unwrap()[1..].iter().any(|later| later == remark)
+/// Whether a remark is among those of a report.
+fn has_remark(report: &Value, remark: &str) -> bool {
+    report["remarks"].as_array().unwrap().iter().any(|other| other == remark)
 }
 
 /// In shape 6 no hallway is as long as 10 m.
@@ -36,7 +36,8 @@ fn the_vertices_of_a_run_are_in_its_log_and_the_command_line_overrides_them() {
     assert!(bytes.windows(recorded.len()).any(|part| part == recorded));
     let visits = |options: &str| {
         let output = scratch.run(&format!("conform run.mcap {LASER} --json {options}"));
-        objects(&stdout(&output)).iter().filter(|line| line["kind"] == "event").count()
+        let lines = objects(&stdout(&output)).into_iter();
+        lines.filter(|line| line["kind"] == "event").collect::<Vec<_>>()
     };
     let by_log = visits("");
     for (params, is_same) in [
@@ -48,7 +49,7 @@ fn the_vertices_of_a_run_are_in_its_log_and_the_command_line_overrides_them() {
         std::fs::write(scratch.path("params.toml"), params).unwrap();
         assert_eq!(visits("--laser-params params.toml") == by_log, is_same, "{params}");
     }
-    assert!(by_log > 1 && visits("--corners no") < by_log);
+    assert!(by_log.len() > 1 && visits("--corners no").len() < by_log.len());
     // A robot that drives by its camera records none.
     scratch.out("simulate worlds/shape-6.toml --by-scene --log scenes.mcap", 0);
     let bytes = std::fs::read(scratch.path("scenes.mcap")).unwrap();
@@ -95,7 +96,7 @@ fn messages_off_the_clock_are_skipped_and_counted() {
         });
         let remark = "skipped messages: 4 whose time is far from that of all others";
         let after = conform(&scratch, file);
-        assert!(has_later_remark(&after, remark), "{after}");
+        assert!(has_remark(&after, remark), "{after}");
         has(
             &after,
             &json!({
@@ -120,7 +121,7 @@ fn messages_off_the_clock_are_skipped_and_counted() {
     assert!((9..=11).contains(&without), "{late}");
     let remark = format!("skipped messages: {without} scans without odometry");
     has(&late, &json!({ "skipped_messages.off_clock": 0 }), "late odometry");
-    assert!(has_later_remark(&late, &remark), "{late}");
+    assert!(has_remark(&late, &remark), "{late}");
     // Without odometry scans are placed by the walls of earlier ones. These are far apart.
     rewritten(&log, &changed, |_, message| !is_odometry(message) && message.channel.topic != "/tf");
     let by_scans = conform(&scratch, "changed.mcap");

@@ -54,15 +54,13 @@ pub fn read<P: Parameter + DeserializeOwned>(text: &str) -> Result<P, DocumentEr
 /// Returns an error if a key is not known, or a number is not one that the parameter can have.
 pub fn read_over<P>(base: &P, text: &str) -> Result<P, DocumentError>
 where
-    P: Parameter + DeserializeOwned + Serialize + Clone,
+    P: Parameter + DeserializeOwned + Serialize,
 {
+    // Errors have their place in the file. What is read is a table of numbers, as the base is.
     read::<P>(text)?;
-    let (Ok(mut whole), Ok(given)) = (Table::try_from(base), text.parse::<Table>()) else {
-        return read(text);
-    };
-    overlay(&mut whole, given);
-    let merged = whole.try_into();
-    merged.or_else(|_| read(text))
+    let mut whole = Table::try_from(base).unwrap_or_default();
+    overlay(&mut whole, text.parse().unwrap_or_default());
+    read(&whole.to_string())
 }
 
 /// Puts the values of one table into another.

@@ -85,7 +85,7 @@ impl TraversalSampler {
         let config = SimulationConfig { pose, noise: self.noise, ..config };
 
         let (robot, sensor) = equipment.robot(&config, number);
-        let monitor = GroundTruthMonitor::at(&plan, marker, entry);
+        let monitor = GroundTruthMonitor::at(&plan, marker, entry).by(&sensor);
         let state = monitor.junction_state(pose);
         let mut explorer = AnyExplorer::new(robot, sensor, (monitor, StoppedBy(watch)));
         if let Some(state) = state {
