@@ -137,9 +137,7 @@ pub fn run<'p>(
     settings: &RunSettings,
 ) -> Run<'p> {
     let &RunSettings { method, dart_bound, .. } = settings;
-    let monitor = GroundTruthMonitor::new(plan, method.algorithm().aid(), facing);
-    let monitor =
-        if matches!(sensor, RobotSensor::Laser(_)) { monitor.by_scans() } else { monitor };
+    let monitor = GroundTruthMonitor::new(plan, method.algorithm().aid(), facing).by(&sensor);
     let mut explorer = AnyExplorer::new(robot, sensor, (monitor, observer));
     let (mapping, mapped) = explorer.map(settings);
     let (moves, is_at_obstacle) = (explorer.moves(), explorer.is_at_obstacle());
