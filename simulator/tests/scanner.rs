@@ -77,7 +77,7 @@ fn buildings_are_mapped_by_laser_also_if_the_scanner_does_not_see_all_round() {
             match run.ending {
                 RunOutcome::Right => assert_eq!(run.moves[0], run.moves[1], "{what}"),
                 RunOutcome::GaveUp(_) => given_up += 1,
-                ending => panic!("{what}: {ending:?}"),
+                RunOutcome::Wrong(why) => panic!("{what}: {why}"),
             }
         }
         assert!(given_up <= 1, "{given_up} of {count} with {field_of_view} degrees");
