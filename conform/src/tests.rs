@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use toposlam_logs::record::{
-    Arrival, Event, EventId, EventKind, Frame, MapRecord, NoSensor, RunEnd, RunEnding, RunObserver,
+    Arrival, Event, EventId, EventKind, Frame, MapRecord, RunEnd, RunEnding, RunObserver,
 };
 use toposlam_model::{
     driving::{odometry::Odometry, visit::JunctionShape},
@@ -21,7 +21,8 @@ use toposlam_model::{
     world::{GraphWorld, World},
 };
 use toposlam_robot::{
-    budget::RunBudget, measured_hallway::log_noise, robot::TimedOdometry, run_settings::RunSettings,
+    any_explorer::RobotSensor, budget::RunBudget, measured_hallway::log_noise,
+    robot::TimedOdometry, run_settings::RunSettings,
 };
 use toposlam_simulator::{
     SimulationConfig, plans, random_plan::random_plan_with, run::run, starts_of,
@@ -128,7 +129,8 @@ fn log(place: &Place, seed: u64) -> Log {
 fn log_of(method: impl Into<MappingMethod>, (plan, facing): &Place, seed: u64) -> Log {
     let robot = SimulationConfig::at_start(plan.clone(), *facing, seed).by_scene();
     let mut log = Log::default();
-    let run = run(plan, *facing, robot, NoSensor, &mut log, &RunSettings::new(method, DARTS));
+    let run =
+        run(plan, *facing, robot, RobotSensor::Scenes, &mut log, &RunSettings::new(method, DARTS));
     assert_eq!(run.outcome(), toposlam_simulator::run::RunOutcome::Right);
     log
 }

@@ -125,7 +125,6 @@ impl<W: Write> RunObserver for Recorder<W> {
                     self.write_own(&encode::command(stamp, *state, *command));
                 }
             }
-            EventKind::LookAround { .. } => {}
             EventKind::Door { number, door } => {
                 self.write_own(&encode::door(stamp, *number, *door));
             }

@@ -14,7 +14,6 @@ use std::{
 };
 
 use nalgebra::Isometry2;
-use toposlam_logs::record::{FrameSensor, RobotSensor};
 use toposlam_model::driving::{odometry::Odometry, scene::MarkerView};
 use toposlam_robot::{
     live::{LiveSensor, Nanoseconds, Reckoning, RobotTopics, SECOND, ServedRobot},
@@ -22,7 +21,14 @@ use toposlam_robot::{
     ros2::{DomainTopics, DriveSettings, RobotDomain, WheelsType, connect},
     superscout::{WheelSpeeds, along_arc},
 };
-use toposlam_vision::laser::scan::{Scan, ScanGeometry};
+use toposlam_vision::{
+    laser::{
+        params::LaserParams,
+        scan::{Scan, ScanGeometry},
+        sensor::LaserSensor,
+    },
+    place::PlaceSensor,
+};
 
 const TIME: Duration = Duration::from_secs(60);
 const ODOMETRY: Duration = Duration::from_millis(20);
@@ -138,12 +144,13 @@ fn drive(domain: &RobotDomain) {
         abort: || {},
     };
     let (mut robot, _run) = connect(domain, &topics, &settings).unwrap();
-    let mut sensor = RobotSensor::Laser(Box::default());
+    let mut sensor = LaserSensor::new(LaserParams::HALLWAYS);
     let (begun, busy) = (Instant::now(), processor_time());
     let mut angle = 0.1;
     while begun.elapsed() < TIME {
         let frame = robot.capture().unwrap();
-        sensor.scene(&frame).unwrap();
+        let scan = frame.scan.as_ref().unwrap();
+        sensor.view(scan, &frame.odometry);
         robot.turn(angle).unwrap();
         angle = -angle;
     }

@@ -1,10 +1,27 @@
 //! A frame that shows where a robot is now: it is taken again if it is missing, too old, or the same as before. Section 4.
 
+use std::fmt;
+
 use thiserror::Error;
 use toposlam_logs::record::{Frame, SensingError};
-use toposlam_model::driving::algorithm2::FrameKind;
 
 use crate::robot::{Robot, RobotError};
+
+/// What a robot takes to see where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameKind {
+    Image,
+    Scan,
+}
+
+impl fmt::Display for FrameKind {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Image => "image",
+            Self::Scan => "scan",
+        })
+    }
+}
 
 /// Why a frame cannot be used.
 #[derive(Debug, Error)]

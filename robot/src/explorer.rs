@@ -11,9 +11,7 @@ use toposlam_logs::record::{Arrival, EventKind, Frame, FrameSensor, RunObserver}
 use toposlam_model::{
     aid::{AidAction, AidKind},
     driving::{
-        algorithm2::{
-            Command, FrameKind, JunctionState, Lost, LostReason, PathExecution, PathState, Step,
-        },
+        algorithm2::{Command, JunctionState, Lost, LostReason, PathExecution, PathState, Step},
         scene::Scene,
         visit::SoughtMarker,
     },
@@ -31,6 +29,7 @@ use crate::{
     run_settings::RunSettings,
 };
 
+pub use crate::capture::FrameKind;
 pub use error::{CorridorFailure, ExplorerError};
 pub(crate) use mapping_run::{MappingRobot, RunParts};
 use obstacle::{DEAD_END, Stall, turning_point};
@@ -172,8 +171,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 Ok(Step::Arrived(_)) | Err(_) => None,
             };
             self.emit(EventKind::Command { state: path.state(), command });
-            let frame = self.frame_kind();
-            match step.map_err(|lost| ExplorerError::Lost { moves, door, lost, frame })? {
+            match step.map_err(|lost| ExplorerError::Lost { moves, door, lost })? {
                 Step::Arrived(state) => return Ok(state),
                 Step::Go(command) => self.carry_out(command)?,
             }
@@ -209,45 +207,17 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 Err(unusable) => last = unusable,
             }
         }
-        let frame = self.frame_kind();
+        let frame = FrameKind::Image;
         let cause = last.cause(frame);
         let (moves, door) = (self.last_move, self.door);
         Err(ExplorerError::NoImage { moves, door, images: RETAKES, cause, frame })
     }
 
-    /// What the robot takes to see where it is.
-    fn frame_kind(&mut self) -> FrameKind {
-        if self.sensor.scanner().is_some() { FrameKind::Scan } else { FrameKind::Image }
-    }
-
-    /// A frame that was taken since the robot last moved, and its scene. If the frame does not show enough, the robot
-    /// looks around first.
+    /// A frame that was taken since the robot last moved, and its scene.
     fn frame(&mut self) -> Result<(Frame, Scene), UnusableFrame> {
-        let mut frame = self.capture()?;
-        let headings = self.sensor.headings_to_look_around(&frame);
-        if !headings.is_empty() {
-            frame = self.look_around(frame, &headings)?;
-        }
+        let frame = self.capture()?;
         let scene = self.sensor.scene(&frame)?;
         Ok((frame, scene))
-    }
-
-    /// Turns to these headings, relative to a frame's, and returns the frame that is taken at the last of them.
-    fn look_around(&mut self, mut frame: Frame, headings: &[f64]) -> Result<Frame, UnusableFrame> {
-        let ahead = frame.odometry.heading;
-        self.sensor.begin_to_look_around(&frame);
-        for heading in headings {
-            self.sensor.remember(&frame);
-            let turn = frame.odometry.seen(ahead + heading);
-            self.last = Some(frame.clone());
-            self.emit(EventKind::Frame(frame));
-            self.emit(EventKind::LookAround { turn });
-            if turn != 0.0 {
-                self.robot.turn(turn).map_err(UnusableFrame::Robot)?;
-            }
-            frame = self.capture()?;
-        }
-        Ok(frame)
     }
 
     fn capture(&mut self) -> Result<Frame, UnusableFrame> {

@@ -4,6 +4,7 @@
 // Tests compare exact numbers.
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
+pub mod any_explorer;
 pub mod budget;
 mod capture;
 pub mod corridors;

@@ -32,9 +32,6 @@ impl RunObserver for Recording {
         match &event.kind {
             EventKind::Frame(frame) => self.frames.push(frame.without_pixels()),
             EventKind::Command { command: Some(command), .. } => self.commands.push(*command),
-            EventKind::LookAround { turn } => {
-                self.commands.push(Command { turn: *turn, forward: 0.0 });
-            }
             EventKind::Arrival(Arrival { sighting: Some(Sighting::Team(team)), .. }) => {
                 let reported = team.0.iter().filter_map(|other| match other {
                     OtherRobot::Elsewhere { degree } => Some(*degree),

@@ -47,7 +47,7 @@ pub struct Replay {
     pub comparison: ReplayComparison,
     /// How long the recorded run took.
     pub recorded_seconds: f64,
-    /// The recorded frames that were used: images, scenes, or scenes of laser scans.
+    /// The recorded frames that were used: images or scenes.
     pub frames: Role,
 }
 
@@ -144,7 +144,6 @@ pub fn replay(
     let recorded = rest.recorded.map.filter(|_| ended);
     comparison.map = recorded.map(|recorded| recorded.same_map(&map));
     let length = log.end().unwrap_or(0).saturating_sub(start);
-    let frames = if frames == Role::Scene && has(Role::Scan) { Role::Scan } else { frames };
     Ok(Replay { error, comparison, recorded_seconds: length as f64 / 1e9, mapping, frames })
 }
 

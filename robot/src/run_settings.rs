@@ -54,13 +54,12 @@ pub struct LaserVertices {
 }
 
 impl LaserVertices {
-    /// Those of a robot that follows Algorithm 2, whose hallways may be short. To a log of its scans, bends and dead ends are
-    /// parts of corridors.
-    pub const OF_HALLWAYS: Self = Self { min_arm: 3.0, corners: false };
+    /// Those of a robot in a building of hallways, which may be short.
+    pub const OF_HALLWAYS: Self = Self { min_arm: 3.0, corners: true };
 
-    /// The same parameters with these vertices.
-    #[must_use]
-    pub fn in_params(self, mut params: LaserParams) -> LaserParams {
+    /// How scans are sensed there. Corners are vertices in buildings with short hallways.
+    pub fn params(self) -> LaserParams {
+        let mut params = if self.corners { LaserParams::HALLWAYS } else { LaserParams::DEFAULT };
         (params.arm.min_arm, params.corner.corners) = (self.min_arm, self.corners);
         params
     }
@@ -196,6 +195,16 @@ mod tests {
         }
         let nameless = RecordedSettings::from_head("max-moves=3").unwrap_err();
         assert!(nameless.starts_with("`` is no algorithm; they are algorithm1, folding,"));
+    }
+
+    #[test]
+    fn a_log_of_a_robot_in_hallways_is_sensed_as_the_robot_sensed() {
+        assert_eq!(LaserVertices::OF_HALLWAYS.params(), LaserParams::HALLWAYS);
+        let vertices = LaserVertices { min_arm: 4.5, corners: false };
+        let mut expected = LaserParams::DEFAULT;
+        expected.arm.min_arm = 4.5;
+        assert_eq!(vertices.params(), expected);
+        assert_eq!(LaserVertices::from(&vertices.params()), vertices);
     }
 
     #[test]

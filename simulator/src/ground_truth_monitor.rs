@@ -7,15 +7,16 @@ use toposlam_logs::record::{Event, EventKind, RunObserver};
 use toposlam_model::{
     aid::{AidKind, State},
     driving::{algorithm2::JunctionState, odometry::Odometry, pose::Pose, scene::wrapped},
-    embedded_graph::Dart,
+    embedded_graph::{Dart, Vertex},
     floor_plan::FloorPlan,
     marker::Directional,
     percept::{Door, Percept},
     world::{AidHandler, GraphWorld, World},
 };
+use toposlam_robot::any_explorer::RobotSensor;
 use toposlam_vision::geometry::nearest;
 
-use crate::truth::{JunctionTruth, angle, junction_at};
+use crate::truth::{JunctionTruth, angle, junction_around, junction_at};
 
 /// Follows a robot in the embedded graph of its floor plan, and checks each arrival at a junction.
 #[derive(Clone, Debug)]
@@ -28,6 +29,8 @@ pub struct GroundTruthMonitor<'p> {
     /// Whether the robot has done something with its aid, since it last arrived, that is not possible.
     is_refused: bool,
     odometry: Odometry,
+    /// The junction at which a robot with a pose is.
+    junction: fn(&FloorPlan, Pose) -> Option<Vertex>,
 }
 
 /// An arrival at a junction, and the expected one.
@@ -84,7 +87,18 @@ impl<'p> GroundTruthMonitor<'p> {
     pub fn new(plan: &'p FloorPlan, aid: AidKind, facing: Dart) -> Self {
         let world = GraphWorld::with_aid(plan.graph(), aid, facing);
         let (door, odometry) = (None, Odometry::default());
-        Self { plan, world, arrivals: Vec::new(), door, is_refused: false, odometry }
+        let (arrivals, is_refused, junction) = (Vec::new(), false, junction_at as fn(&_, _) -> _);
+        Self { plan, world, arrivals, door, is_refused, odometry, junction }
+    }
+
+    /// The same for a robot with this sensor. By scans it is at a junction if it is within its walls: it need not stand at
+    /// the turning point.
+    #[must_use]
+    pub fn by(self, sensor: &RobotSensor) -> Self {
+        match sensor {
+            RobotSensor::Scenes | RobotSensor::Camera(_) => self,
+            RobotSensor::Laser(_) => Self { junction: junction_around, ..self },
+        }
     }
 
     /// A robot that came to the entry dart's junction by that dart; the marker lies along the facing
@@ -118,7 +132,7 @@ impl<'p> GroundTruthMonitor<'p> {
     /// The dart of the junction at a pose whose hallway leads in a direction.
     fn dart_at(&self, pose: Pose, entry: f64) -> Option<Dart> {
         let graph = self.plan.graph();
-        let vertex = junction_at(self.plan, pose)?;
+        let vertex = (self.junction)(self.plan, pose)?;
         let turned = |dart: &Dart| wrapped(angle(self.plan.direction(*dart)) - entry).abs();
         nearest(graph.darts_of(vertex), turned)
     }

@@ -4,7 +4,7 @@
 use std::fmt::Display;
 
 use thiserror::Error;
-use toposlam_logs::record::{FrameSensor, RunObserver};
+use toposlam_logs::record::RunObserver;
 use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::FloorPlan,
@@ -13,7 +13,8 @@ use toposlam_model::{
     world::GraphWorld,
 };
 use toposlam_robot::{
-    explorer::{ExplorerError, RobotExplorer},
+    any_explorer::{AnyExplorer, RobotSensor},
+    explorer::ExplorerError,
     recording::Recording,
     robot::Robot as _,
     run_settings::RunSettings,
@@ -131,13 +132,13 @@ pub fn run<'p>(
     plan: &'p FloorPlan,
     facing: Dart,
     robot: SimulatedRobot,
-    sensor: impl FrameSensor,
+    sensor: RobotSensor,
     observer: impl RunObserver,
     settings: &RunSettings,
 ) -> Run<'p> {
     let &RunSettings { method, dart_bound, .. } = settings;
-    let monitor = GroundTruthMonitor::new(plan, method.algorithm().aid(), facing);
-    let mut explorer = RobotExplorer::new(robot, sensor, (monitor, observer));
+    let monitor = GroundTruthMonitor::new(plan, method.algorithm().aid(), facing).by(&sensor);
+    let mut explorer = AnyExplorer::new(robot, sensor, (monitor, observer));
     let (mapping, mapped) = explorer.map(settings);
     let (moves, is_at_obstacle) = (explorer.moves(), explorer.is_at_obstacle());
     let (robot, (monitor, _)) = explorer.into_parts();
@@ -196,24 +197,23 @@ pub fn explored(
 // paper: exp.off-line
 pub fn offline(
     recording: &Recording,
-    sensor: impl FrameSensor,
+    sensor: RobotSensor,
     observer: impl RunObserver,
     settings: &RunSettings,
 ) -> Result<MapWalk, MappingError<ExplorerError>> {
-    let mut explorer = RobotExplorer::new(recording.robot(), sensor, observer);
+    let mut explorer = AnyExplorer::new(recording.robot(), sensor, observer);
     let (mapping, mapped) = explorer.map(settings);
     mapped.map(|_| mapping)
 }
 
 #[cfg(test)]
 mod tests {
-    use toposlam_logs::record::{NoSensor, RobotSensor};
     use toposlam_model::{
         aid::{AidAction, markers::MOVABLE, team::PAIR},
         mapping::RecoveryConfig,
         percept::Door,
     };
-    use toposlam_robot::robot::RobotError;
+    use toposlam_robot::{robot::RobotError, run_settings::LaserVertices};
 
     use super::*;
     use crate::{
@@ -230,7 +230,7 @@ mod tests {
     /// A run of a robot that has scenes without images.
     fn by_scene(config: &SimulationConfig, method: impl Into<MappingMethod>) -> Run<'_> {
         let settings = RunSettings::new(method, DARTS);
-        run(&config.plan, config.marker, config.by_scene(), NoSensor, (), &settings)
+        run(&config.plan, config.marker, config.by_scene(), RobotSensor::Scenes, (), &settings)
     }
 
     // paper: validation.traverse
@@ -274,7 +274,7 @@ mod tests {
         }
         let config = with_movable_marker("shape-8", 0, 3);
         let settings = RunSettings::new(movable, DARTS);
-        let sensor = RobotSensor::Laser(Box::default());
+        let sensor = RobotSensor::from(LaserVertices::OF_HALLWAYS.params());
         let robot = config.by_laser(&ScannerParams::default());
         let run = run(&config.plan, config.marker, robot, sensor, (), &settings);
         assert_eq!(run.outcome(), RunOutcome::Right, "by laser");
@@ -287,18 +287,20 @@ mod tests {
         for (name, starts) in [("shape-8", 3), ("building-12", 1)] {
             for start in 0..starts {
                 let config = with_movable_marker(name, start, 7 + start as u64).with_team();
-                let robot = config.by_scene().with_other(config.other().by_scene(), None);
+                let robot =
+                    config.by_scene().with_other(config.other().by_scene(), RobotSensor::Scenes);
                 let settings = RunSettings::new(team, DARTS);
-                let run = run(&config.plan, config.marker, robot, NoSensor, (), &settings);
+                let run =
+                    run(&config.plan, config.marker, robot, RobotSensor::Scenes, (), &settings);
                 assert_eq!(run.outcome(), RunOutcome::Right, "{name} from start {start}");
                 assert!(run.isomorphic() && run.pose_true());
             }
         }
         let config = with_movable_marker("shape-8", 0, 3).with_team();
         let params = ScannerParams::default();
-        let sensor = RobotSensor::Laser(Box::default());
+        let sensor = RobotSensor::from(LaserVertices::OF_HALLWAYS.params());
         let other = config.other().by_laser(&params);
-        let robot = config.by_laser(&params).with_other(other, Some(sensor.clone()));
+        let robot = config.by_laser(&params).with_other(other, sensor.clone());
         let settings = RunSettings::new(team, DARTS);
         let run = run(&config.plan, config.marker, robot, sensor, (), &settings);
         assert_eq!(run.outcome(), RunOutcome::Right, "by laser");
@@ -341,10 +343,10 @@ mod tests {
             let mut recording = Recording::default();
             let settings = RunSettings::new(algorithm, DARTS);
             let (plan, marker, robot) = (&config.plan, config.marker, config.by_scene());
-            let run = run(plan, marker, robot, NoSensor, &mut recording, &settings);
+            let run = run(plan, marker, robot, RobotSensor::Scenes, &mut recording, &settings);
             assert_eq!(recording.frames.len() as u64, run.frames);
             let mut repeated = Recording::default();
-            let again = offline(&recording, NoSensor, &mut repeated, &settings).unwrap();
+            let again = offline(&recording, RobotSensor::Scenes, &mut repeated, &settings).unwrap();
             assert_eq!(again.map(), run.mapping.map());
             assert_eq!(again.moves(), run.mapping.moves());
             assert!(repeated == recording, "other commands");

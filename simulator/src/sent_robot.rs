@@ -2,10 +2,10 @@
 
 use std::{f64::consts::PI, sync::Arc};
 
-use toposlam_logs::record::RobotSensor;
 use toposlam_model::{driving::WAITING, floor_plan::FloorPlan, percept::Door, world::World};
 use toposlam_robot::{
-    explorer::{ExplorerError, RobotExplorer},
+    any_explorer::{AnyExplorer, RobotSensor},
+    explorer::ExplorerError,
     robot::{Robot, RobotError},
 };
 
@@ -16,7 +16,7 @@ use crate::{SimulatedRobot, truth::LyingMarker};
 #[derive(Debug)]
 pub(crate) struct SentRobot {
     plan: Arc<FloorPlan>,
-    explorer: RobotExplorer<SimulatedRobot, Option<RobotSensor>>,
+    explorer: AnyExplorer<SimulatedRobot>,
     /// The number of doors where it stands, once it has gone anywhere.
     degree: Option<u32>,
 }
@@ -25,9 +25,9 @@ impl SentRobot {
     pub(crate) fn waiting(
         plan: Arc<FloorPlan>,
         robot: SimulatedRobot,
-        sensor: Option<RobotSensor>,
+        sensor: RobotSensor,
     ) -> Self {
-        Self { plan, explorer: RobotExplorer::new(robot, sensor, ()).sent(), degree: None }
+        Self { plan, explorer: AnyExplorer::new(robot, sensor, ()).sent(), degree: None }
     }
 
     pub(crate) fn degree(&self) -> Option<u32> {

@@ -4,14 +4,16 @@ use std::sync::Arc;
 
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_logs::record::{Frame, RobotSensor};
+use toposlam_logs::record::Frame;
 use toposlam_model::{
     aid::AidAction,
     driving::pose::Pose,
     floor_plan::{FloorPlan, Rectangle},
 };
 use toposlam_robot::{
+    any_explorer::RobotSensor,
     robot::{Robot, RobotError, Sample, TimedOdometry},
+    run_settings::LaserVertices,
     superscout::{Base, Drive},
 };
 
@@ -121,18 +123,17 @@ impl RobotEquipment {
         &self,
         config: &SimulationConfig,
         number: u64,
-    ) -> (SimulatedRobot, Option<RobotSensor>) {
+    ) -> (SimulatedRobot, RobotSensor) {
         match self {
-            Self::Scenes => (config.by_scene(), None),
+            Self::Scenes => (config.by_scene(), RobotSensor::Scenes),
             Self::Images(sensors) => {
                 let look = sensors.look(number);
                 let mut chance = Xoshiro256PlusPlus::seed_from_u64(config.seed);
                 let robot = config.with_images(sensors.rig(), look, &Effects::drawn(&mut chance));
-                (robot, Some(RobotSensor::Camera(Box::new(sensors.sensor(look)))))
+                (robot, RobotSensor::Camera(Box::new(sensors.sensor(look))))
             }
             Self::Laser(params) => {
-                let sensor = RobotSensor::Laser(Box::default());
-                (config.by_laser(params), Some(sensor))
+                (config.by_laser(params), LaserVertices::OF_HALLWAYS.params().into())
             }
         }
     }
@@ -154,7 +155,7 @@ impl SimulatedRobot {
     /// The same robot with another one in its team, instead of a marker: the first one sees that one's plate, and that one sees
     /// none.
     #[must_use]
-    pub fn with_other(mut self, mut other: Self, sensor: Option<RobotSensor>) -> Self {
+    pub fn with_other(mut self, mut other: Self, sensor: RobotSensor) -> Self {
         other.marker = None;
         other.camera.place_marker(None);
         self.other = Some(Box::new(SentRobot::waiting(self.plan.clone(), other, sensor)));

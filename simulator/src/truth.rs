@@ -230,6 +230,15 @@ pub fn junction_at(plan: &FloorPlan, pose: Pose) -> Option<Vertex> {
     nearest(plan.graph().vertices(), off).filter(|vertex| off(vertex) <= JUNCTION_WITHIN)
 }
 
+/// The junction within whose walls a robot with this pose is; `None` if it is within none.
+pub fn junction_around(plan: &FloorPlan, pose: Pose) -> Option<Vertex> {
+    let off = |vertex: &Vertex| {
+        let at = plan.junction(*vertex).position;
+        (at[0] - pose.position[0]).abs().max((at[1] - pose.position[1]).abs())
+    };
+    nearest(plan.graph().vertices(), off).filter(|vertex| off(vertex) <= plan.hallway_width() / 2.0)
+}
+
 /// The direction that is nearest to a heading.
 pub fn nearest_direction(heading: f64) -> Direction {
     let (sine, cosine) = heading.sin_cos();

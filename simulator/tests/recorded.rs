@@ -1,7 +1,7 @@
 //! Simulated runs, and their logs.
 
-use toposlam_logs::{messages, record::FrameSensor, recorder::Recorder};
-use toposlam_robot::run_settings::RunSettings;
+use toposlam_logs::{messages, recorder::Recorder};
+use toposlam_robot::{any_explorer::RobotSensor, run_settings::RunSettings};
 use toposlam_simulator::{
     SimulatedRobot, SimulationConfig, plan_named,
     run::{Run, run},
@@ -19,7 +19,7 @@ pub(crate) fn in_plan(name: &str, seed: u64) -> SimulationConfig {
 pub(crate) fn recorded<'c>(
     config: &'c SimulationConfig,
     robot: SimulatedRobot,
-    sensor: impl FrameSensor,
+    sensor: RobotSensor,
     settings: &RunSettings,
 ) -> (Run<'c>, Vec<u8>) {
     let mut log = Vec::new();

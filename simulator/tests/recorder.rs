@@ -16,6 +16,7 @@ use toposlam_model::{
     mapping::{MappingAlgorithm, MappingError, MappingMethod},
 };
 use toposlam_robot::{
+    any_explorer::RobotSensor,
     explorer::{ExplorerError, RobotExplorer},
     robot::{Robot, RobotError, TimedOdometry},
     run_settings::RunSettings,
@@ -33,7 +34,7 @@ fn logged(fault: Option<RobotFault>, check: impl Fn(&Run)) -> Vec<Message> {
     let faults = fault.into_iter().collect();
     let config = SimulationConfig { faults, ..in_plan("shape-6", 5) };
     let settings = RunSettings::new(MappingAlgorithm::Algorithm1, 200);
-    let (run, log) = recorded(&config, config.by_scene(), NoSensor, &settings);
+    let (run, log) = recorded(&config, config.by_scene(), RobotSensor::Scenes, &settings);
     check(&run);
     messages(&log)
 }
@@ -191,7 +192,8 @@ fn a_full_disk_stops_the_run() {
     let mut recorder = Recorder::new(Full, &messages::Run::default(), None).unwrap();
     let (robot, settings) =
         (config.by_scene(), RunSettings::new(MappingAlgorithm::Algorithm1, 200));
-    let run = run(&config.plan, config.marker, robot, NoSensor, &mut recorder, &settings);
+    let run =
+        run(&config.plan, config.marker, robot, RobotSensor::Scenes, &mut recorder, &settings);
     assert!(recorder.stop());
     let stopped = Some(MappingError::World(ExplorerError::Stopped { moves: 1 }));
     assert_eq!(run.error, stopped);

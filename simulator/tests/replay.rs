@@ -2,7 +2,6 @@
 
 use toposlam_logs::{
     reader::Log,
-    record::NoSensor,
     topic_map::{Role, TopicMap},
 };
 use toposlam_model::mapping::{
@@ -11,6 +10,7 @@ use toposlam_model::mapping::{
     MappingError,
 };
 use toposlam_robot::{
+    any_explorer::RobotSensor,
     replay::{Agreement, ReplayError, replay},
     run_settings::RunSettings,
 };
@@ -20,7 +20,7 @@ use crate::recorded::{in_plan, recorded};
 fn logged(world: &str, seed: u64, algorithm: MappingAlgorithm) -> (Log, MapWalk) {
     let config = in_plan(world, seed);
     let settings = RunSettings::new(algorithm, 200);
-    let (run, log) = recorded(&config, config.by_scene(), NoSensor, &settings);
+    let (run, log) = recorded(&config, config.by_scene(), RobotSensor::Scenes, &settings);
     (Log::of_bytes(log).unwrap(), run.mapping)
 }
 

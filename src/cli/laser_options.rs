@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use toposlam_conform::Evidence;
-use toposlam_model::format::document::Document;
 use toposlam_robot::run_settings::LaserVertices;
 use toposlam_vision::{laser::params::LaserParams, params};
 
@@ -45,27 +44,11 @@ impl LaserOptions {
 
     /// The parameters. What a log records of its robot's vertices holds where the file does not set it.
     pub(super) fn params(&self, recorded: Option<LaserVertices>) -> Result<LaserParams, CliError> {
-        let recorded = recorded.unwrap_or_else(|| (&LaserParams::default()).into());
-        let Some(path) = &self.laser_params else {
-            return Ok(recorded.in_params(LaserParams::default()));
-        };
+        let params = recorded.map_or(LaserParams::DEFAULT, LaserVertices::params);
+        let Some(path) = &self.laser_params else { return Ok(params) };
         let wrong = |error: &dyn std::fmt::Display| CliError::in_file(path, error.to_string());
         let text = String::from_utf8(input::read(path)?).map_err(|error| wrong(&error))?;
-        let params: LaserParams = params::read(&text).map_err(|error| wrong(&error))?;
-        let document = Document::parse_settings(text.as_bytes()).map_err(|error| wrong(&error))?;
-        let is_set = |table: &str, key: &str| {
-            let tables = document.root().any_table().ok();
-            let inner = tables.and_then(|tables| tables.get(table)?.any_table().ok());
-            inner.is_some_and(|inner| inner.get(key).is_some())
-        };
-        let mut vertices = LaserVertices::from(&params);
-        if !is_set("arm", "min_arm") {
-            vertices.min_arm = recorded.min_arm;
-        }
-        if !is_set("corner", "corners") {
-            vertices.corners = recorded.corners;
-        }
-        Ok(vertices.in_params(params))
+        params::read_over(&params, &text).map_err(|error| wrong(&error))
     }
 }
 

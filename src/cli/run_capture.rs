@@ -9,10 +9,7 @@ use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
 use toposlam_logs::record::{Event, EventKind, Frame, RunObserver};
 use toposlam_model::{
     aid::{Action, AidKind},
-    driving::{
-        algorithm2::{Command, PathState},
-        pose::Pose,
-    },
+    driving::{algorithm2::PathState, pose::Pose},
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::FloorPlan,
@@ -178,11 +175,6 @@ impl RunObserver for RunCapture<'_> {
             EventKind::Command { state, command } => {
                 if let Some(last) = self.rounds.last_mut() {
                     (last.state, last.command) = (*state, *command);
-                }
-            }
-            EventKind::LookAround { turn } => {
-                if let Some(last) = self.rounds.last_mut() {
-                    last.command = Some(Command { turn: *turn, forward: 0.0 });
                 }
             }
             EventKind::Door { door, .. } => {

@@ -5,10 +5,7 @@ mod feasible;
 use std::{io::Write, path::PathBuf, sync::Arc, time::Instant};
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use toposlam_logs::{
-    record::{RobotSensor, StoppedBy},
-    world_hash,
-};
+use toposlam_logs::{record::StoppedBy, world_hash};
 use toposlam_model::{
     aid::{self, AidKind, markers::MOVABLE, team::PAIR},
     embedded_graph::Dart,
@@ -18,6 +15,7 @@ use toposlam_model::{
     marker::Directional,
 };
 use toposlam_robot::{
+    any_explorer::RobotSensor,
     budget::RunBudget,
     recording::Recording,
     run_settings::{LaserVertices, RunSettings},
@@ -172,8 +170,7 @@ struct Simulation {
     facing: Dart,
     settings: RunSettings,
     robot: SimulatedRobot,
-    /// `None` if the frames are scenes.
-    sensor: Option<RobotSensor>,
+    sensor: RobotSensor,
     /// With a camera that takes images.
     sensors: Option<(Camera, ColourModel)>,
     frame_kind: &'static str,
@@ -225,7 +222,8 @@ impl SimulateArguments {
         }
         let settings = self.options.settings(Some(&world_hash(&world.graph, facing)))?;
         let settings = self.with_aid(settings)?;
-        let laser = scanner.as_ref().map(|_| LaserVertices::OF_HALLWAYS);
+        let vertices = LaserVertices::OF_HALLWAYS;
+        let laser = scanner.as_ref().map(|_| vertices);
         let settings = RunSettings { laser, ..settings };
         let config = SimulationConfig {
             noise: self.noise,
@@ -241,11 +239,13 @@ impl SimulateArguments {
         let (equipped, sensor, sensors, frame_kind): (Equipped, _, _, _) =
             match (&scanner, self.by_scene) {
                 (Some(scanner), _) if self.sensor == SensorChoice::Laser => {
-                    let sensor = RobotSensor::Laser(Box::default());
+                    let sensor = RobotSensor::from(vertices.params());
                     let equipped = |config: &SimulationConfig| config.by_laser(scanner);
-                    (Box::new(equipped), Some(sensor), None, "scans")
+                    (Box::new(equipped), sensor, None, "scans")
                 }
-                (_, true) => (Box::new(SimulationConfig::by_scene), None, None, "scenes"),
+                (_, true) => {
+                    (Box::new(SimulationConfig::by_scene), RobotSensor::Scenes, None, "scenes")
+                }
                 (_, false) => {
                     let look = self.appearance.look;
                     let effects = self.appearance.effects(self.seed)?;
@@ -257,7 +257,7 @@ impl SimulateArguments {
                         move |config: &SimulationConfig| config.with_images(&rig, look, &effects);
                     let sensor = RobotSensor::Camera(Box::new(sensors.sensor(look)));
                     let sensors = Some((camera, sensors.colours(look).clone()));
-                    (Box::new(equipped), Some(sensor), sensors, "images")
+                    (Box::new(equipped), sensor, sensors, "images")
                 }
             };
         let robot = equipped(&config);

@@ -8,7 +8,7 @@ use std::ops::Range;
 use nalgebra::Point2;
 
 use crate::{
-    bearing::{REACH, STEPS, direction, range},
+    bearing::{STEPS, direction, range},
     colour::{PixelClass, Stripe, StripeKind},
     ground_view::GroundView,
 };
@@ -161,15 +161,7 @@ impl Bearings {
 }
 
 impl Sight {
-    /// A bearing on which a wall was measured at this range. A wall behind [`REACH`] is not looked at.
-    pub(crate) fn measured(range: Option<f64>) -> Self {
-        match range {
-            Some(range) if range < REACH => Self::at(Some(range)),
-            Some(_) => Self { floor: REACH, ..Self::default() },
-            None => Self::default(),
-        }
-    }
-
+    #[cfg(test)]
     pub(crate) fn at(range: Option<f64>) -> Self {
         let edge = range.map(|range| Edge { range, sure: true, clear: true, width: 0.5 });
         let floor = range.unwrap_or_default();

@@ -3,7 +3,8 @@
 
 use std::ops::RangeInclusive;
 
-use serde::de::DeserializeOwned;
+use serde::{Serialize, de::DeserializeOwned};
+use toml::{Table, Value};
 use toposlam_model::format::document::{Document, DocumentError, DocumentValue};
 
 /// What a TOML file can set: a number in a range, a switch, or a table of parameters.
@@ -45,6 +46,33 @@ pub fn read<P: Parameter + DeserializeOwned>(text: &str) -> Result<P, DocumentEr
     let params = document.root().read()?;
     P::check(document.root(), None)?;
     Ok(params)
+}
+
+/// The same over other parameters than the default: what is not in the file stays.
+///
+/// # Errors
+/// Returns an error if a key is not known, or a number is not one that the parameter can have.
+pub fn read_over<P>(base: &P, text: &str) -> Result<P, DocumentError>
+where
+    P: Parameter + DeserializeOwned + Serialize,
+{
+    // Errors have their place in the file. What is read is a table of numbers, as the base is.
+    read::<P>(text)?;
+    let mut whole = Table::try_from(base).unwrap_or_default();
+    overlay(&mut whole, text.parse().unwrap_or_default());
+    read(&whole.to_string())
+}
+
+/// Puts the values of one table into another.
+fn overlay(whole: &mut Table, given: Table) {
+    for (key, value) in given {
+        match (whole.get_mut(&key), value) {
+            (Some(Value::Table(inner)), Value::Table(given)) => overlay(inner, given),
+            // A whole number is as good as any other.
+            (Some(Value::Float(old)), Value::Integer(new)) => *old = new as f64,
+            (_, value) => drop(whole.insert(key, value)),
+        }
+    }
 }
 
 /// Structs of parameters, each with its default, and a number with its range if that is not the usual one of its type.

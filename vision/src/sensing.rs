@@ -172,7 +172,7 @@ fn interpreted(view: &GroundView, bearings: &Bearings) -> (Scene, SensingTrace) 
 
 /// The place within a boundary, and the results of the steps that lead to it. `margin` is the distance from
 /// the boundary to the wall planes, in metres.
-pub(crate) fn place_within(mut boundary: Boundary, margin: f64) -> (Place, SensingTrace) {
+fn place_within(mut boundary: Boundary, margin: f64) -> (Place, SensingTrace) {
     let clusters = clusters(&boundary);
     let lines = lines(&clusters);
     let frame = WallFrame::fit(&lines);

@@ -368,7 +368,7 @@ fn doubtful_log(visit: usize) -> (Vec<u8>, messages::Run) {
         let arrivals = {
             let log = Recorder::new(&mut bytes, &head, None).unwrap();
             let mut observer = Doubtful { log, near, arrivals: Vec::new(), at: [0.0; 2] };
-            run(&plan, facing, robot, NoSensor, &mut observer, &settings);
+            run(&plan, facing, robot, RobotSensor::Scenes, &mut observer, &settings);
             observer.log.finish().unwrap();
             observer.arrivals
         };

@@ -35,7 +35,7 @@ fn log_with(
     let config =
         SimulationConfig { faults, ..SimulationConfig::at_start(plan.clone(), *facing, seed) };
     let mut log = Log::default();
-    let run = run(plan, *facing, config.by_scene(), NoSensor, &mut log, settings);
+    let run = run(plan, *facing, config.by_scene(), RobotSensor::Scenes, &mut log, settings);
     let ending = match &run.error {
         None => RunEnding::Mapped,
         Some(error) => RunEnding::OutOfBudget(error.to_string()),
@@ -205,7 +205,7 @@ fn judged_scenes(name: &str, fault: &str, seed: u64) -> Vec<Judgement> {
     let mut log = Vec::new();
     let head = head_of(&settings);
     let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
-    run(plan, facing, robot.by_scene(), NoSensor, &mut recorder, &settings);
+    run(plan, facing, robot.by_scene(), RobotSensor::Scenes, &mut recorder, &settings);
     recorder.finish().unwrap();
     let world = NamedWorld::numbered(name, "", plan.graph().clone(), Some(facing));
     let anyone = DoorChooser::Anyone;

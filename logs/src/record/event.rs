@@ -36,11 +36,6 @@ pub enum EventKind {
         /// What the robot does; `None` if the path has ended.
         command: Option<Command>,
     },
-    /// The robot turned to look around, after the last frame: a scanner that does not see all round shows too little of
-    /// where it is. A frame that is followed by this event has no scene. Logs have the motion, and not this event.
-    LookAround {
-        turn: f64,
-    },
     Door {
         /// Which move begins, counted from 1, if known.
         number: Option<u32>,

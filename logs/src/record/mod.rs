@@ -11,4 +11,4 @@ pub use event::{Arrival, Event, EventId, EventKind, RunEnd, RunEnding, nanosecon
 pub use frame::{CameraImage, Frame};
 pub use map::MapRecord;
 pub use observer::{RunObserver, StoppedBy};
-pub use sensor::{FrameSensor, NoSensor, RobotSensor, SensingError};
+pub use sensor::{FrameSensor, NoSensor, SensingError};

@@ -7,11 +7,14 @@ use toposlam_logs::record::RunObserver;
 use toposlam_model::driving::scene::wrapped;
 use toposlam_vision::{
     geometry::{clockwise, direction, distance, nearest},
-    laser::navigation::OpeningLimits,
+    laser::{navigation::OpeningLimits, params::CornerParams},
     place::{Certainty, PlaceArm, SeenPlace},
 };
 
-use super::{CorridorExplorer, CorridorFailure, LeftPlace, ROBOT, SideTrip, Stop, motion::NoWay};
+use super::{
+    CorridorExplorer, CorridorFailure, LeftPlace, SideTrip, Stop, motion::NoWay,
+    params::CorridorParams,
+};
 use crate::robot::Robot;
 
 /// Whether a way is an arm; `None` if that is undecided.
@@ -20,7 +23,8 @@ type IsArm = Option<bool>;
 impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     /// Where any ways of the local map meet near a point.
     pub(super) fn opening_at(&self, point: Point2<f64>) -> Option<SeenPlace> {
-        let limits = OpeningLimits { near: ROBOT.near_opening, together: ROBOT.one_opening };
+        let limits =
+            OpeningLimits { near: self.driving.near_opening, together: self.driving.one_opening };
         self.local_map()?.opening(point, limits)
     }
 
@@ -31,7 +35,9 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         } else {
             self.driven_doors(&place, entry)
         };
-        let is_junction = self.scanner.sees_arms || !matches!(doors, Ok(None));
+        // A robot that stops at corners may have seen one beside the next place.
+        let is_junction =
+            self.scanner.sees_arms && !self.params.corner.corners || !matches!(doors, Ok(None));
         let SeenPlace { centre, clearance: extent, .. } = place;
         self.left = Some(LeftPlace { centre, extent, is_junction });
         // It goes on where it would have gone.
@@ -47,8 +53,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         self.look_around()?;
         let mut doors = vec![entry];
         let mut tried: Vec<f64> = Vec::new();
-        for _ in 0..ROBOT.looks {
-            let is_old = |way: f64, old: f64| wrapped(way - old).abs() < ROBOT.same_way;
+        for _ in 0..self.driving.looks {
+            let is_old = |way: f64, old: f64| wrapped(way - old).abs() < self.driving.same_way;
             let is_new = |way: &f64| !doors.iter().chain(&tried).any(|&old| is_old(*way, old));
             let mut ways: Vec<f64> =
                 self.ways_of(opening).into_iter().filter(|way| is_new(way)).collect();
@@ -65,16 +71,19 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 doors.push(driven);
             }
         }
-        in_order(doors, entry)
+        in_order(doors, entry, &self.params.corner)
     }
 
     /// The directions of the ways that leave an opening in at least two of the views there.
     fn ways_of(&self, opening: &SeenPlace) -> Vec<f64> {
         let mut ways: Vec<(f64, usize)> = Vec::new();
-        let here = |seen: &&SeenPlace| distance(seen.centre, opening.centre) < ROBOT.same_place;
+        let here =
+            |seen: &&SeenPlace| distance(seen.centre, opening.centre) < self.driving.same_place;
         for seen in self.openings.iter().flatten().filter(here) {
             for direction in seen.directions() {
-                match ways.iter_mut().find(|way| wrapped(way.0 - direction).abs() < ROBOT.same_way)
+                match ways
+                    .iter_mut()
+                    .find(|way| wrapped(way.0 - direction).abs() < self.driving.same_way)
                 {
                     Some(way) => way.1 += 1,
                     None => ways.push((direction, 1)),
@@ -90,19 +99,23 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         self.look_around()?;
         // The directions of the arms that it has looked into, and whether they are arms.
         let mut known: Vec<(f64, bool)> = Vec::new();
-        let (mut has_moved, mut tries) = (false, 0);
-        for _ in 0..ROBOT.looks {
+        let (mut has_moved, mut tries, mut centred) = (false, 0, 0);
+        for _ in 0..self.driving.looks {
             let Some(place) = self.visits.status() else {
                 let robot = self.on_local_map();
                 let off = |seen: &&SeenPlace| distance(seen.centre, robot);
                 let near = nearest(self.seen.last().into_iter().flatten(), off)
-                    .filter(|seen| off(seen) < ROBOT.same_place && !has_moved);
+                    .filter(|seen| off(seen) < self.driving.same_place && !has_moved);
                 let Some(seen) = near.cloned() else { return Ok(None) };
                 has_moved = true;
                 self.go_to(&seen)?;
                 self.look_around()?;
                 continue;
             };
+            if centred < self.driving.centred && self.goes_to_centre_of(&place)? {
+                centred += 1;
+                continue;
+            }
             let turn = self.turn_of_map();
             last.clone_from(&place);
             let is_known = |arm: f64| known.iter().any(|known| is_same(known.0, arm));
@@ -124,7 +137,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             }
             let doors: Vec<f64> = if is_undecided {
                 let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
-                seen_at(view, &place).into_iter().flat_map(SeenPlace::directions).collect()
+                seen_at(view, &place, self.driving.at_centre)
+                    .into_iter()
+                    .flat_map(SeenPlace::directions)
+                    .collect()
             } else {
                 place.arms.iter().filter(|arm| arm.is_certain()).map(|arm| arm.direction).collect()
             };
@@ -136,9 +152,21 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                     doors.push(arm);
                 }
             }
-            return in_order(doors, entry);
+            return in_order(doors, entry, &self.params.corner);
         }
         Err(CorridorFailure::Undecided.into())
+    }
+
+    /// Goes to the centre of a place, as the last view shows it, and looks around there. Returns whether it was farther away.
+    fn goes_to_centre_of(&mut self, place: &SeenPlace) -> Result<bool, Stop> {
+        let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
+        let seen = seen_at(view, place, self.driving.at_centre).unwrap_or(place).clone();
+        let is_off = distance(seen.centre, self.on_local_map()) > self.driving.off_centre;
+        if is_off {
+            self.go_to(&seen)?;
+            self.look_around()?;
+        }
+        Ok(is_off)
     }
 
     /// Drives into an arm and back. Returns the direction in which it drove, and whether it could drive as far as makes an
@@ -178,17 +206,17 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         self.look_around()?;
         // It may have gone through the middle of the place first.
         let driven =
-            if distance(begin, far) > ROBOT.step { direction(begin, far) } else { towards };
+            if distance(begin, far) > self.driving.step { direction(begin, far) } else { towards };
         Ok((driven, is_arm))
     }
 
     /// Goes a little further, looks around there, and comes back.
-    fn look_from_further(&mut self, towards: f64) -> Result<(), Stop> {
+    pub(super) fn look_from_further(&mut self, towards: f64) -> Result<(), Stop> {
         let begin = self.at();
         let way = self.way;
         self.heading = towards;
         let mut is_leaving = true;
-        while self.way - way < ROBOT.further && self.step(is_leaving)?.is_none() {
+        while self.way - way < self.driving.further && self.step(is_leaving)?.is_none() {
             is_leaving = false;
         }
         self.turn_around()?;
@@ -198,10 +226,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// The directions of the arms of a place on the local map that are not certain in most of the last views.
     fn uncertain_arms(&self, place: &SeenPlace) -> Vec<f64> {
-        let views = &self.seen[self.seen.len().saturating_sub(ROBOT.views)..];
+        let views = &self.seen[self.seen.len().saturating_sub(self.driving.views)..];
         // The direction, the number of views that show the arm, and of those in which it is certain.
         let mut arms: Vec<(f64, usize, usize)> = Vec::new();
-        for seen in views.iter().filter_map(|view| seen_at(view, place)) {
+        for seen in views.iter().filter_map(|view| seen_at(view, place, self.driving.at_centre)) {
             for arm @ &PlaceArm { direction, .. } in &seen.arms {
                 let certain = usize::from(arm.is_certain());
                 match arms.iter_mut().find(|known| is_same(known.0, direction)) {
@@ -210,7 +238,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 }
             }
         }
-        let enough = (ROBOT.certain * views.len() as f64).ceil() as usize;
+        let enough = (self.driving.certain * views.len() as f64).ceil() as usize;
         let uncertain = arms.iter().filter(|arm| arm.1 > 1 && arm.2 < enough);
         uncertain.map(|&(arm, ..)| arm).collect()
     }
@@ -220,7 +248,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         let centre = self.odometry_from_map * place.centre;
         // It may have passed the place at a distance.
         let last = self.trail.without_side_trips().next().map_or(0.0, |at| distance(at, centre));
-        let far = (place.clearance.max(1.0) + ROBOT.came_from).max(last + 0.1);
+        let far = (place.clearance.max(1.0) + self.driving.came_from).max(last + 0.1);
         let before = self.trail.before_entering(centre, far);
         before.map_or(wrapped(self.heading + PI), |point| direction(centre, point))
     }
@@ -229,9 +257,9 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     pub(super) fn is_left(&self, place: &SeenPlace) -> bool {
         self.left.is_some_and(|left| {
             let reach = if left.is_junction {
-                ROBOT.left_behind.max(1.5 * left.extent)
+                self.driving.left_behind.max(1.5 * left.extent)
             } else {
-                ROBOT.no_junction
+                self.driving.no_junction
             };
             distance(left.centre, place.centre) < reach
         })
@@ -239,23 +267,32 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 }
 
 /// What may be a junction at a place, in a view.
-fn seen_at<'v>(view: &'v [SeenPlace], place: &SeenPlace) -> Option<&'v SeenPlace> {
+fn seen_at<'v>(view: &'v [SeenPlace], place: &SeenPlace, near: f64) -> Option<&'v SeenPlace> {
     let off = |seen: &&SeenPlace| distance(seen.centre, place.centre);
-    nearest(view, off).filter(|seen| off(seen) < place.clearance.max(ROBOT.at_centre))
+    nearest(view, off).filter(|seen| off(seen) < place.clearance.max(near))
 }
 
 fn is_same(one: f64, other: f64) -> bool {
-    wrapped(one - other).abs() < ROBOT.same_arm
+    wrapped(one - other).abs() < CorridorParams::DEFAULT.same_arm
 }
 
 /// The directions of doors, clockwise from the one by which the robot came in, from about this direction; `None` if they are
-/// fewer than three.
-fn in_order(mut doors: Vec<f64>, entry: f64) -> Result<Option<Vec<f64>>, Stop> {
-    if doors.len() < 3 {
+/// not those of a vertex: a junction with at least three, or a corner.
+fn in_order(
+    mut doors: Vec<f64>,
+    entry: f64,
+    corner: &CornerParams,
+) -> Result<Option<Vec<f64>>, Stop> {
+    let is_vertex = match doors[..] {
+        [one, other] => corner.is_corner([one, other]),
+        _ => doors.len() >= 3,
+    };
+    if !is_vertex {
         return Ok(None);
     }
     let off = |door: &f64| wrapped(door - entry).abs();
-    let first = nearest(doors.iter().copied(), off).filter(|door| off(door) < ROBOT.entry);
+    let first = nearest(doors.iter().copied(), off)
+        .filter(|door| off(door) < CorridorParams::DEFAULT.entry);
     let first = first.ok_or(CorridorFailure::Undecided)?;
     let turn = |door: f64| {
         let turn = clockwise(first, door);
@@ -269,18 +306,31 @@ fn in_order(mut doors: Vec<f64>, entry: f64) -> Result<Option<Vec<f64>>, Stop> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn doors_are_clockwise_from_the_one_by_which_the_robot_came() {
-        let order = |doors: &[f64], entry| match in_order(doors.to_vec(), entry) {
+    /// The doors in order; empty if the robot does not know which of them it drove.
+    fn order(doors: &[f64], entry: f64, corner: &CornerParams) -> Option<Vec<f64>> {
+        match in_order(doors.to_vec(), entry, corner) {
             Ok(doors) => doors,
             Err(Stop::Failure(CorridorFailure::Undecided)) => Some(Vec::new()),
             Err(Stop::Failure(_) | Stop::Error(_)) => panic!(),
-        };
+        }
+    }
+
+    #[test]
+    fn doors_are_clockwise_from_the_one_by_which_the_robot_came() {
+        let corner = CornerParams::DEFAULT;
         let doors = [0.1, 1.7, -3.0];
-        assert_eq!(order(&doors, -3.1), Some(vec![-3.0, 1.7, 0.1]));
-        assert_eq!(order(&doors, 1.5), Some(vec![1.7, 0.1, -3.0]));
-        assert_eq!(order(&doors[..2], 0.0), None, "two doors are none of a junction");
+        assert_eq!(order(&doors, -3.1, &corner), Some(vec![-3.0, 1.7, 0.1]));
+        assert_eq!(order(&doors, 1.5, &corner), Some(vec![1.7, 0.1, -3.0]));
         // Nobody knows which door is the one that the robot drove.
-        assert_eq!(order(&doors, -1.4), Some(Vec::new()));
+        assert_eq!(order(&doors, -1.4, &corner), Some(Vec::new()));
+    }
+
+    #[test]
+    fn two_doors_are_those_of_a_vertex_if_corners_are_vertices_and_the_way_bends_enough() {
+        let corners = CornerParams { corners: true, ..CornerParams::DEFAULT };
+        assert_eq!(order(&[1.5, 0.0], 0.1, &corners), Some(vec![0.0, 1.5]));
+        assert_eq!(order(&[1.5, 0.0], 0.1, &CornerParams::DEFAULT), None);
+        assert_eq!(order(&[3.0, 0.0], 0.1, &corners), None, "a hallway that goes straight on");
+        assert_eq!(order(&[0.5, 0.0], 0.1, &corners), None, "both doors lead back");
     }
 }

@@ -1,32 +1,38 @@
-//! A robot that maps a network of corridors by its laser scanner alone: at any angle, with up to eight doors at a junction.
-//! It goes on with what it derives, right or wrong.
+//! A robot that maps a building by its laser scanner alone: a network of corridors at any angle, with up to eight doors at a
+//! junction, or hallways with corners. It goes on with what it derives, right or wrong.
 //!
 //! It drives along the middle line of its local map until it is within what may be a junction. There it turns around once,
 //! and drives into each arm of which it does not see enough, until it has driven as far as makes an arm, or cannot go on. If
 //! its scanner does not see far enough for arms, it stops where any ways meet, and drives into each of them. A detector of
-//! its own reports the marker. Bends are no vertices, and dead ends are.
+//! its own reports the marker. Dead ends are vertices. Bends are if the parameters say so: then the robot begins at a vertex,
+//! with its back to a door, and else in a corridor.
 
 mod junction;
+mod marking;
 mod motion;
 mod params;
 mod trail;
 
-use std::{f64::consts::PI, sync::Arc};
+use std::{
+    f64::consts::{FRAC_PI_2, PI},
+    sync::Arc,
+};
 
 use nalgebra::{Isometry2, Point2};
 use toposlam_logs::record::{Arrival, EventKind, Frame, RunObserver};
 use toposlam_model::{
     driving::{
-        algorithm2::FrameKind,
+        algorithm2::JunctionState,
         odometry::Odometry,
         scene::{MarkerView, wrapped},
+        visit::JunctionShape,
     },
     mapping::{MapWalk, MappedWorld, MappingError, Relocate},
     percept::{Door, Percept, Sighting},
-    world::World,
+    world::{AidHandler, World},
 };
 use toposlam_vision::{
-    geometry::{direction, distance, from_robot, nearest},
+    geometry::{distance, from_robot},
     laser::{local_map::LocalMap, params::LaserParams, scan::Scan, sensor::LaserSensor},
     place::SeenPlace,
     visits::Visits,
@@ -34,12 +40,13 @@ use toposlam_vision::{
 
 use crate::{
     budget::{Allowance, Spent},
-    capture::{RETAKES, UnusableFrame, capture},
+    capture::{FrameKind, RETAKES, UnusableFrame, capture},
     event_log::EventLog,
     explorer::{CorridorFailure, ExplorerError, MappingRobot, RunParts},
     robot::{Robot, RobotError},
     run_settings::RunSettings,
 };
+use marking::Sought;
 use params::CorridorParams;
 use trail::Trail;
 
@@ -49,6 +56,7 @@ pub struct CorridorExplorer<R, O = ()> {
     robot: R,
     log: EventLog<O>,
     params: LaserParams,
+    driving: &'static CorridorParams,
     visits: Visits<LaserSensor, ()>,
     trail: Trail,
     /// The length of the way, in metres, and until it was last at a junction or a dead end.
@@ -72,8 +80,9 @@ pub struct CorridorExplorer<R, O = ()> {
     is_at_opening: bool,
     /// What it has seen on a side trip while it was near the place where that began.
     side_trip: Option<SideTrip>,
-    /// The marker where it was seen last, and the length of the way then.
-    marker: Option<(Point2<f64>, f64)>,
+    sought: Sought,
+    /// The marker, or the other robot of the team, where it was seen last.
+    marker: Option<SeenMarker>,
     /// The place where it stands, with the directions of its doors, clockwise from the one by which it came in.
     place: Option<StoodAt>,
     /// Whether it takes what stops it for a dead end, and whether it stands before that.
@@ -93,8 +102,19 @@ struct ScannerReach {
     sees_all_round: bool,
 }
 
+#[derive(Clone, Copy, Debug)]
+struct SeenMarker {
+    at: Point2<f64>,
+    /// The direction of its longer side, or the opposite one.
+    axis: f64,
+    /// The length of the robot's way when it was seen.
+    way: f64,
+}
+
 #[derive(Clone, Debug)]
 struct StoodAt {
+    centre: Point2<f64>,
+    extent: f64,
     doors: Vec<f64>,
     /// What it sees of the marker there.
     sighting: Sighting,
@@ -132,16 +152,15 @@ impl From<CorridorFailure> for Stop {
     }
 }
 
-const ROBOT: CorridorParams = CorridorParams::DEFAULT;
-
 impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
-    /// A robot in a corridor, which looks towards its first junction.
+    /// A robot at its start.
     pub fn new(robot: R, params: &LaserParams, observer: O) -> Self {
         let heading = robot.odometry().odometry.heading;
         Self {
             robot,
             log: EventLog::new(observer),
             params: *params,
+            driving: CorridorParams::for_corners(params.corner.corners),
             visits: Visits::by_laser(*params),
             trail: Trail::default(),
             way: 0.0,
@@ -155,6 +174,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             looked: None,
             is_at_opening: false,
             side_trip: None,
+            sought: Sought::default(),
             marker: None,
             place: None,
             returns_at_obstacles: false,
@@ -167,6 +187,21 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         }
     }
 
+    /// The same robot, if it is already known where it stands: at a place in a building with right angles.
+    #[must_use]
+    pub fn at_junction(mut self, state: &JunctionState) -> Self {
+        let JunctionState { shape: JunctionShape(quarters), percept, entry } = *state;
+        let quarters = (0..).zip(quarters).filter(|(_, is_door)| *is_door);
+        let doors = quarters.map(|(quarter, _)| wrapped(entry - FRAC_PI_2 * f64::from(quarter)));
+        self.place = Some(StoodAt {
+            centre: self.at(),
+            extent: self.driving.end_extent,
+            doors: doors.collect(),
+            sighting: percept.sighting,
+        });
+        self
+    }
+
     /// The moves that ended at a junction or a dead end, with those of recoveries and audits.
     pub fn moves(&self) -> u64 {
         self.moves
@@ -175,6 +210,15 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     /// The length of the way, in metres.
     pub fn way(&self) -> f64 {
         self.way
+    }
+
+    /// Whether it stands before an obstacle that it takes for a dead end.
+    pub fn is_at_obstacle(&self) -> bool {
+        self.is_blocked
+    }
+
+    pub fn robot_mut(&mut self) -> &mut R {
+        &mut self.robot
     }
 
     pub fn into_parts(self) -> (R, O) {
@@ -191,6 +235,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         settings: &RunSettings,
     ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
         self.returns_at_obstacles |= settings.method.recovers();
+        self.sought = Sought::of(settings.method.algorithm().aid());
         self.map_building(settings)
     }
 
@@ -210,9 +255,15 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         }
     }
 
+    /// The odometry of the last scan: what the robot decides depends on its scans alone.
+    fn odometry(&self) -> Odometry {
+        let now = || self.robot.odometry().odometry;
+        self.last.as_ref().map_or_else(now, |last| last.odometry)
+    }
+
     /// Where it is, in the frame of odometry.
     fn at(&self) -> Point2<f64> {
-        self.robot.odometry().odometry.position.into()
+        self.odometry().position.into()
     }
 
     /// Where it is on the local map.
@@ -239,29 +290,36 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             let (moves, is_at_marker) = (self.last_move, false);
             return Err(Stop::Error(ExplorerError::Budget { moves, limit, is_at_marker }));
         }
-        if self.way > ROBOT.longest_way || self.way - self.way_to_last > ROBOT.longest_search {
+        if self.way > self.driving.longest_way
+            || self.way - self.way_to_last > self.driving.longest_search
+        {
             return Err(CorridorFailure::TooFar.into());
         }
+        let before = self.at();
         let (frame, scan) = self.look()?;
         let Frame { odometry, marker, .. } = frame;
+        self.way += distance(before, odometry.position);
         self.emit(EventKind::Frame(frame));
         if self.trail.is_empty() {
             // A scanner that does not know its range may see no farther than any other.
             let range = scan.geometry().range_max;
             self.scanner = ScannerReach {
-                sees_arms: range.is_finite() && range >= ROBOT.sees_arms,
-                sees_all_round: scan.field_of_view() > ROBOT.all_around,
+                // The arms of hallways are short.
+                sees_arms: self.params.corner.corners
+                    || range.is_finite() && range >= self.driving.sees_arms,
+                sees_all_round: scan.field_of_view() > self.driving.all_around,
             };
         }
         self.trail.push(odometry.position.into());
-        if let Some(MarkerView { position, .. }) = marker {
-            self.marker = Some((from_robot(&odometry) * Point2::from(position), self.way));
+        if let Some(MarkerView { position, axis, .. }) = marker {
+            let at = from_robot(&odometry) * Point2::from(position);
+            self.marker = Some(SeenMarker { at, axis: odometry.whither(axis), way: self.way });
         }
         if let Some(view) = self.visits.add_frame((), &scan, &odometry) {
             self.odometry_from_map = view.odometry_from_map;
             // What is far from the place is not on its map.
             let is_near = self.side_trip.as_mut().is_none_or(|trip| {
-                let is_near = distance(trip.from, odometry.position) <= ROBOT.near_place;
+                let is_near = distance(trip.from, odometry.position) <= self.driving.near_place;
                 if is_near {
                     trip.near.push((scan.clone(), odometry));
                 }
@@ -278,7 +336,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         }
         let at = self.on_local_map();
         if self.left.is_some_and(|LeftPlace { centre, extent, .. }| {
-            distance(centre, at) > extent + 2.0 * ROBOT.left_behind
+            distance(centre, at) > extent + 2.0 * self.driving.left_behind
         }) {
             self.left = None;
         }
@@ -290,11 +348,11 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     fn is_opening(&self) -> bool {
         let robot = self.on_local_map();
         let has_looked = self.looked.is_some_and(|(at, way)| {
-            distance(at, robot) < ROBOT.looked && self.way - way < ROBOT.look_memory
+            distance(at, robot) < self.driving.looked && self.way - way < self.driving.look_memory
         });
         !has_looked
             && !self.scanner.sees_all_round
-            && self.local_map().is_some_and(|map| map.meets_near(robot, ROBOT.opening))
+            && self.local_map().is_some_and(|map| map.meets_near(robot, self.driving.opening))
     }
 
     /// A scan that was taken since the robot last moved.
@@ -319,28 +377,15 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// It stands at a place of this extent, with doors in these directions.
     fn stand(&mut self, centre: Point2<f64>, extent: f64, doors: Vec<f64>) -> Result<(), Stop> {
-        let is_here = |(at, way): &(Point2<f64>, f64)| {
-            distance(*at, centre) < extent + ROBOT.marker_range
-                && self.way - way < ROBOT.marker_memory
-        };
-        let sighting = match self.marker.filter(is_here) {
-            None => Sighting::Nothing,
-            Some((at, _)) => {
-                let off = |door: &usize| wrapped(doors[*door] - direction(centre, at)).abs();
-                let door = nearest(0..doors.len(), off)
-                    .filter(|door| off(door) < ROBOT.same_arm)
-                    .filter(|_| distance(at, centre) > ROBOT.marker_off);
-                Sighting::Pointing(Door(door.ok_or(CorridorFailure::Undecided)? as u32))
-            }
-        };
-        self.place = Some(StoodAt { doors, sighting });
+        let sighting = self.sighting(centre, extent, &doors)?;
+        self.place = Some(StoodAt { centre, extent, doors, sighting });
         self.way_to_last = self.way;
         Ok(())
     }
 
     /// Reports that it stands at a place, after the move with this number if it is known.
     fn report_arrival(&mut self, number: Option<u64>) {
-        let Some(StoodAt { doors, sighting }) = self.place.clone() else { return };
+        let Some(StoodAt { doors, sighting, .. }) = self.place.clone() else { return };
         let percept = Percept { degree: doors.len() as u32, sighting };
         let spent = self.spent();
         self.allowance.perceive(percept, spent);
@@ -353,11 +398,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         }));
     }
 
-    /// The place where it stands. At the very start, it drives to its first one.
+    /// The place where it stands. At the very start, it drives to its first one, unless it begins at a vertex.
     fn place(&mut self) -> Result<StoodAt, ExplorerError> {
         if self.place.is_none() && self.last_move == 0 {
-            let heading = self.heading;
-            self.drive(heading).map_err(|stop| self.error(stop))?;
+            self.begin().map_err(|stop| self.error(stop))?;
             self.report_arrival(Some(0));
         }
         self.place.clone().ok_or_else(|| self.error(CorridorFailure::Missed.into()))
@@ -403,7 +447,11 @@ impl<R: Robot, O: RunObserver> World for CorridorExplorer<R, O> {
         }
         self.moves += 1;
         self.report_arrival(Some(self.last_move));
-        Ok(())
+        self.turn_away_from_entry().map_err(|stop| self.error(stop))
+    }
+
+    fn handler(&mut self) -> Option<&mut dyn AidHandler<Error = ExplorerError>> {
+        Some(self)
     }
 }
 
@@ -418,7 +466,7 @@ impl<R: Robot, O: RunObserver> Relocate for CorridorExplorer<R, O> {
         if !can_go_on {
             return Err(error);
         }
-        for number in 0..ROBOT.tries {
+        for number in 0..self.driving.tries {
             let towards = if number % 2 == 0 { self.heading } else { self.heading + PI };
             match self.drive(wrapped(towards)) {
                 Ok(()) => {

@@ -4,14 +4,16 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Point2;
 use toposlam_logs::record::RunObserver;
-use toposlam_model::driving::scene::wrapped;
+use toposlam_model::{driving::scene::wrapped, percept::Sighting};
 use toposlam_vision::{
     geometry::{direction, distance, unit},
-    laser::navigation::{LineEnd, WayChoice, along},
+    laser::navigation::{LineEnd, WayAhead, WayChoice, along},
     place::SeenPlace,
 };
 
-use super::{CorridorExplorer, CorridorFailure, LeftPlace, ROBOT, Stop, trail::Turn};
+use super::{
+    CorridorExplorer, CorridorFailure, LeftPlace, StoodAt, Stop, marking::Sought, trail::Turn,
+};
 use crate::robot::Robot;
 
 /// Why a robot does not go on.
@@ -35,10 +37,58 @@ enum StretchEnd {
 }
 
 impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
+    /// Where the robot begins. If corners are vertices, it stands at one, with its back to a door, and else in a corridor.
+    pub(super) fn begin(&mut self) -> Result<(), Stop> {
+        self.sense()?;
+        let heading = self.odometry().heading;
+        self.heading = heading;
+        if self.params.corner.corners {
+            self.look_around()?;
+            let entry = wrapped(heading + PI);
+            if let Some(place) = self.visits.status()
+                && self.decide(place, entry)?
+            {
+                return self.look_for_marker();
+            }
+        }
+        self.drive(heading)
+    }
+
+    /// Looks for the marker from beside the place where the robot begins: it may lie below the robot.
+    fn look_for_marker(&mut self) -> Result<(), Stop> {
+        let Some(StoodAt { centre, extent, doors, .. }) = self.place.clone() else {
+            return Ok(());
+        };
+        for door in doors.iter().rev() {
+            let is_seen = self.place.as_ref().is_some_and(|at| at.sighting != Sighting::Nothing);
+            if is_seen || self.sought == Sought::Nothing {
+                break;
+            }
+            self.look_from_further(*door)?;
+            self.stand(centre, extent, doors.clone())?;
+        }
+        Ok(())
+    }
+
+    /// A robot that another one sends waits with its back to the door by which it came.
+    pub(super) fn turn_away_from_entry(&mut self) -> Result<(), Stop> {
+        let entry = self.place.as_ref().and_then(|place| place.doors.first());
+        if let Some(&entry) = entry.filter(|_| self.sought == Sought::Nothing) {
+            self.robot.turn(self.odometry().seen(wrapped(entry + PI)))?;
+        }
+        Ok(())
+    }
+
     /// Drives away in a direction until it is at a junction or a dead end.
     pub(super) fn drive(&mut self, towards: f64) -> Result<(), Stop> {
         (self.place, self.is_blocked) = (None, false);
         if self.trail.is_empty() {
+            self.sense()?;
+            self.look_around()?;
+            let (centre, extent) = (self.on_local_map(), self.driving.end_extent);
+            self.left = Some(LeftPlace { centre, extent, is_junction: true });
+        } else if self.sought == Sought::Nothing {
+            // Another robot has moved it.
             self.sense()?;
         }
         self.heading = towards;
@@ -63,16 +113,22 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 }
                 // What it saw before may have led it aside.
                 StretchEnd::LookedAround => {
-                    self.heading = wrapped(self.back(ROBOT.leaving_measured) + PI);
+                    self.heading = wrapped(self.back(self.driving.leaving_measured) + PI);
                 }
                 StretchEnd::NoWay(no_way) => {
                     let at = self.at();
-                    let is_new = tried.is_none_or(|tried| distance(tried, at) > ROBOT.no_junction);
-                    if is_new && along > ROBOT.bend_after && self.finds_bend()? {
+                    let is_new =
+                        tried.is_none_or(|tried| distance(tried, at) > self.driving.no_junction);
+                    let back = self.back(self.driving.bend_back);
+                    if is_new && along > self.driving.bend_after && self.finds_bend(back)? {
                         tried = Some(at);
+                        // No view shows a corner whose walls are hidden.
+                        if self.params.corner.is_corner([back, self.heading]) {
+                            return self.stand_at_corner([back, self.heading]);
+                        }
                     } else if let Some((turn, before)) = self.turn_before_end(first, start, along)
                         && tried_turn
-                            .is_none_or(|tried| distance(tried, turn.at) > ROBOT.same_place)
+                            .is_none_or(|tried| distance(tried, turn.at) > self.driving.same_place)
                     {
                         self.go_straight_on(turn)?;
                         along = before;
@@ -95,7 +151,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         };
         if along + left < self.params.arm.min_arm {
             self.drive_back(first, start)?;
-            let (centre, extent) = (self.on_local_map(), ROBOT.end_extent);
+            let (centre, extent) = (self.on_local_map(), self.driving.end_extent);
             self.left = Some(LeftPlace { centre, extent, is_junction: true });
             return Err(CorridorFailure::Alcove.into());
         }
@@ -105,9 +161,9 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     /// Where it turned less than an arm before an end, and the length of its way to there: what ends may be an alcove, and the
     /// corridor goes straight on.
     fn turn_before_end(&self, first: usize, start: Point2<f64>, along: f64) -> Option<(Turn, f64)> {
-        let turn = self.trail.last_turn(first, self.params.arm.min_arm, ROBOT.turned)?;
+        let turn = self.trail.last_turn(first, self.params.arm.min_arm, self.driving.turned)?;
         let before = (along - distance(turn.at, self.at())).max(distance(start, turn.at));
-        (before > ROBOT.bend_after).then_some((turn, before))
+        (before > self.driving.bend_after).then_some((turn, before))
     }
 
     /// Drives back to where it turned, and looks straight on.
@@ -120,11 +176,18 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         Ok(())
     }
 
+    /// It stands in a corner, with the way back and another one.
+    fn stand_at_corner(&mut self, ways: [f64; 2]) -> Result<(), Stop> {
+        let (centre, extent) = (self.on_local_map(), self.driving.end_extent);
+        self.left = Some(LeftPlace { centre, extent, is_junction: true });
+        self.stand(self.at(), extent, ways.to_vec())
+    }
+
     /// It stands where there is no way but the one back.
     fn stand_at_end(&mut self) -> Result<(), Stop> {
         self.left = None;
         let at = self.at();
-        self.stand(at, ROBOT.end_extent, vec![self.back(ROBOT.near_place)])
+        self.stand(at, self.driving.end_extent, vec![self.back(self.driving.near_place)])
     }
 
     /// The direction to where it was when it was last this far from here. Its heading may be that of a short way to look at
@@ -135,20 +198,21 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         before.map_or(wrapped(self.heading + PI), |before| direction(at, before))
     }
 
-    /// Whether a robot that cannot go straight on sees another way than the one back, once it has looked around. Then it
-    /// looks there.
-    fn finds_bend(&mut self) -> Result<bool, Stop> {
-        let back = self.back(ROBOT.look_ahead);
+    /// Whether a robot that cannot go straight on sees another way than the one back, in this direction, once it has looked
+    /// around. Then it looks there.
+    fn finds_bend(&mut self, back: f64) -> Result<bool, Stop> {
         self.look_around()?;
+        let corner = &self.params.corner;
+        let most = if corner.corners { corner.max_turn } else { PI - self.driving.same_way };
         let choice = WayChoice {
             towards: wrapped(back + PI - self.turn_of_map()),
-            aside: PI - ROBOT.same_way,
-            measured: ROBOT.bend_length,
+            aside: most,
+            measured: self.driving.bend_length,
         };
         let robot = self.on_local_map();
         let way = self.local_map().and_then(|map| map.way_ahead(robot, &choice));
-        let to = way.and_then(|way| along(&way.line, ROBOT.bend_length));
-        let to = to.filter(|to| distance(robot, *to) > ROBOT.bend_length / 2.0);
+        let to = way.and_then(|way| along(&way.line, self.driving.bend_length));
+        let to = to.filter(|to| distance(robot, *to) > self.driving.bend_length / 2.0);
         if let Some(to) = to {
             self.heading = wrapped(direction(robot, to) + self.turn_of_map());
         }
@@ -211,34 +275,44 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         let Some(map) = self.local_map() else { return Ok(Some(NoWay::Unseen)) };
         let towards = wrapped(self.heading - self.turn_of_map());
         let choice = if is_leaving {
-            WayChoice { towards, aside: ROBOT.leaving, measured: ROBOT.leaving_measured }
+            WayChoice {
+                towards,
+                aside: self.driving.leaving,
+                measured: self.driving.leaving_measured,
+            }
         } else {
-            WayChoice { towards, aside: ROBOT.bend, measured: ROBOT.look_ahead }
+            WayChoice { towards, aside: self.driving.bend, measured: self.driving.look_ahead }
         };
-        let way = map.way_ahead(robot, &choice).unwrap_or_else(|| {
-            map.straight_ahead(robot, towards, ROBOT.before_wall, ROBOT.look_ahead)
-        });
-        let Some(target) = along(&way.line, ROBOT.look_ahead) else {
-            return Ok(Some(NoWay::Unseen));
-        };
+        let look_ahead = self.driving.look_ahead;
+        let straight = || map.straight_ahead(robot, towards, self.driving.before_wall, look_ahead);
+        let mut way = map.way_ahead(robot, &choice).unwrap_or_else(straight);
+        let left_of = |way: &WayAhead| along(&way.line, look_ahead).map(|to| distance(robot, to));
+        let has_ended = |left: Option<f64>| left.is_none_or(|left| left < self.driving.at_end);
+        if has_ended(left_of(&way)) && way.end == LineEnd::Unknown {
+            let closer = straight();
+            if left_of(&closer).is_some_and(|left| left > self.driving.look_closer) {
+                way = closer;
+            }
+        }
+        let Some(target) = along(&way.line, look_ahead) else { return Ok(Some(NoWay::Unseen)) };
         let left = distance(robot, target);
-        if left < ROBOT.at_end {
+        if left < self.driving.at_end {
             return Ok(Some(match way.end {
                 LineEnd::Wall(beyond) => NoWay::Wall(left + beyond),
                 LineEnd::Unknown => NoWay::Unseen,
             }));
         }
-        let beyond = along(&way.line, 2.0 * ROBOT.look_ahead).unwrap_or(target);
+        let beyond = along(&way.line, 2.0 * look_ahead).unwrap_or(target);
         let (target, beyond) = (self.odometry_from_map * target, self.odometry_from_map * beyond);
         let before = self.at();
         self.step_to(target)?;
-        self.heading = if distance(before, self.at()) < ROBOT.stuck {
+        self.heading = if distance(before, self.at()) < self.driving.stuck {
             let ahead = direction(before, target);
             if !self.passes_beside(ahead)? {
                 return Ok(Some(NoWay::Obstacle));
             }
             ahead
-        } else if distance(self.at(), beyond) > ROBOT.look_ahead / 2.0 {
+        } else if distance(self.at(), beyond) > self.driving.look_ahead / 2.0 {
             direction(self.at(), beyond)
         } else {
             direction(before, self.at())
@@ -248,11 +322,11 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// Whether a robot that is stopped where its map shows nothing, as by glass, passes a little beside it.
     fn passes_beside(&mut self, ahead: f64) -> Result<bool, Stop> {
-        let turns = (1..=ROBOT.beside).map(|turn| ROBOT.beside_turn * turn as f64);
+        let turns = (1..=self.driving.beside).map(|turn| self.driving.beside_turn * turn as f64);
         for aside in turns.flat_map(|turn| [turn, -turn]) {
             let before = self.at();
-            self.step_to(before + ROBOT.look_ahead * unit(ahead + aside))?;
-            if distance(before, self.at()) >= ROBOT.step / 2.0 {
+            self.step_to(before + self.driving.look_ahead * unit(ahead + aside))?;
+            if distance(before, self.at()) >= self.driving.step / 2.0 {
                 return Ok(true);
             }
         }
@@ -261,29 +335,29 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// Turns to a point, goes up to a step towards it, and takes a scan.
     fn step_to(&mut self, point: Point2<f64>) -> Result<(), Stop> {
-        let at = self.robot.odometry().odometry;
+        let at = self.odometry();
         let length = distance(at.position, point);
         if length < 1e-3 {
             return Ok(());
         }
         let mut turn = at.seen(direction(at.position, point));
         // A scanner that does not see all round sees what it passes while it turns.
-        for _ in 0..ROBOT.turns {
-            if self.scanner.sees_all_round || turn.abs() <= ROBOT.turn {
+        for _ in 0..self.driving.turns {
+            if self.scanner.sees_all_round || turn.abs() <= self.driving.turn {
                 break;
             }
-            let part = ROBOT.turn.copysign(turn);
+            let part = self.driving.turn.copysign(turn);
             self.robot.turn(part)?;
             self.sense()?;
-            turn = self.robot.odometry().odometry.seen(direction(at.position, point));
+            turn = self.odometry().seen(direction(at.position, point));
         }
-        if turn.abs() > ROBOT.straight {
+        if turn.abs() > self.driving.straight {
             self.robot.turn(turn)?;
         }
-        self.robot.forward(length.min(ROBOT.step))?;
-        self.way += distance(at.position, self.at());
-        self.heading = self.robot.odometry().odometry.heading;
-        self.sense()
+        self.robot.forward(length.min(self.driving.step))?;
+        self.sense()?;
+        self.heading = self.odometry().heading;
+        Ok(())
     }
 
     /// Drives to points, one after the other, as far as it can.
@@ -293,10 +367,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     ) -> Result<(), Stop> {
         for point in points {
             let mut left = distance(self.at(), point);
-            while left >= ROBOT.at_point {
+            while left >= self.driving.at_point {
                 self.step_to(point)?;
                 let now = distance(self.at(), point);
-                if now > left - ROBOT.stuck {
+                if now > left - self.driving.stuck {
                     break;
                 }
                 left = now;
@@ -307,16 +381,16 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// Drives back to a place where it was when its trail had this number of points.
     pub(super) fn drive_back(&mut self, begin: usize, place: Point2<f64>) -> Result<(), Stop> {
-        let back = self.trail.back_to(begin.saturating_sub(1), ROBOT.step);
+        let back = self.trail.back_to(begin.saturating_sub(1), self.driving.step);
         self.drive_along(back.into_iter().chain([place]))?;
-        let is_there = distance(self.at(), place) < ROBOT.at_centre;
+        let is_there = distance(self.at(), place) < self.driving.at_centre;
         if is_there { Ok(()) } else { Err(CorridorFailure::Missed.into()) }
     }
 
     /// Drives on past an opening, so that its other side is on the local map, too.
     fn see_all_of(&mut self, opening: &mut SeenPlace) -> Result<(), Stop> {
         let begin = self.way;
-        while self.way - begin < ROBOT.past_opening && self.step(false)?.is_none() {}
+        while self.way - begin < self.driving.past_opening && self.step(false)?.is_none() {}
         // There may be another one where it is now.
         if let Some(seen) = self.opening_at(opening.centre) {
             *opening = seen;
@@ -327,9 +401,9 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     /// Goes to the centre of a place, if it can stand there.
     pub(super) fn go_to(&mut self, place: &SeenPlace) -> Result<(), Stop> {
         let map = self.local_map();
-        let has_space = map.is_some_and(|map| map.has_space_at(place.centre, ROBOT.room));
+        let has_space = map.is_some_and(|map| map.has_space_at(place.centre, self.driving.room));
         let centre = self.odometry_from_map * place.centre;
-        if has_space && distance(centre, self.at()) > ROBOT.is_there {
+        if has_space && distance(centre, self.at()) > self.driving.is_there {
             self.drive_along([centre])?;
         }
         Ok(())
@@ -346,8 +420,11 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// Turns around once where it is.
     pub(super) fn turn_around(&mut self) -> Result<(), Stop> {
-        let parts =
-            if self.scanner.sees_all_round { ROBOT.round_views } else { ROBOT.sector_views };
+        let parts = if self.scanner.sees_all_round {
+            self.driving.round_views
+        } else {
+            self.driving.sector_views
+        };
         for _ in 0..parts {
             self.robot.turn(TAU / parts as f64)?;
             self.sense()?;

@@ -1,6 +1,7 @@
 //! The parameters of a robot that explores corridors by a laser scanner.
 //!
-//! Lengths are in metres and angles in radians. The values are for corridors that are about 2 m wide.
+//! Lengths are in metres and angles in radians. The default values are for corridors that are about 2 m wide, and the others
+//! for hallways that are 1.4 to 2 m wide, with junctions from 2.8 m apart.
 
 use toposlam_vision::params;
 
@@ -42,6 +43,12 @@ params! {
         past_opening: f64 = 2.5,
         /// ... and has left one that is no junction when it is this far from it.
         no_junction: f64 = 1.0,
+        /// A robot that stands farther than this from the centre of the place where it looks around goes there, ...
+        off_centre: f64 = 1.0,
+        /// ... at most this often.
+        centred: usize = 2,
+        /// Where it is not seen how a way ends, the robot goes closer to what is ahead, if that is farther than this.
+        look_closer: f64 = 1_000.0,
         /// What is this near to the centre of a place in a view is the same place.
         at_centre: f64 = 2.0,
         /// An arm is certain if it is in this part of the last views.
@@ -82,6 +89,8 @@ params! {
         bend: f64 = 1.2,
         /// A robot that cannot go straight on looks for a bend if it has driven this far, ...
         bend_after: f64 = 3.0,
+        /// ... its way to the bend is measured over this length, ...
+        bend_back: f64 = 0.9,
         /// ... and its way behind the bend is measured over this length.
         bend_length: f64 = 1.5,
         /// A robot whose way leads this far aside from a straight line has turned: half of a corridor.
@@ -108,5 +117,36 @@ params! {
         longest_search: f64 = 1_000.0 => 0.0..=100_000.0,
         /// The longest way of a run.
         longest_way: f64 = 30_000.0 => 0.0..=100_000.0,
+    }
+}
+
+impl CorridorParams {
+    /// Those of a robot in hallways: what belongs to a place is nearer to its centre than to the next place, and the robot
+    /// stands near the centre of a place, as the directions of doors are measured from there.
+    const HALLWAYS: Self = Self {
+        left_behind: 1.3,
+        came_from: 0.3,
+        same_place: 1.5,
+        looked: 1.0,
+        near_place: 1.5,
+        no_junction: 0.6,
+        off_centre: 0.3,
+        look_closer: 0.3,
+        at_centre: 1.0,
+        further: 0.5,
+        marker_range: 0.6,
+        marker_memory: 6.0,
+        step: 0.3,
+        look_ahead: 0.7,
+        leaving_measured: 1.5,
+        bend_after: 1.5,
+        bend_back: 1.5,
+        room: 0.3,
+        ..Self::DEFAULT
+    };
+
+    /// Those of a robot in a building in which corners are vertices, or are not.
+    pub(super) fn for_corners(corners: bool) -> &'static Self {
+        if corners { &Self::HALLWAYS } else { &Self::DEFAULT }
     }
 }

@@ -3,18 +3,18 @@
 use thiserror::Error;
 use toposlam_model::{
     counts::counted,
-    driving::algorithm2::{FrameKind, Lost, LostReason},
+    driving::algorithm2::{Lost, LostReason},
     percept::Door,
 };
 
-use crate::{budget::BudgetLimit, robot::RobotError};
+use crate::{budget::BudgetLimit, capture::FrameKind, robot::RobotError};
 
 /// Why a run ended early. Moves are counted from 1; 0 is the start.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ExplorerError {
     /// The robot does not know where it is.
-    #[error("on move {moves}, {}: {}", by_door(*.door), .lost.with(*.frame))]
-    Lost { moves: u64, door: Option<Door>, lost: Lost, frame: FrameKind },
+    #[error("on move {moves}, {}: {lost}", by_door(*.door))]
+    Lost { moves: u64, door: Option<Door>, lost: Lost },
     /// The camera gives no usable image, or the scanner no usable scan. `cause` is what is wrong with the last one.
     #[error("on move {moves}, {}: {images} unusable {frame}s in a row: {cause}", by_door(*.door))]
     NoImage { moves: u64, door: Option<Door>, images: u32, cause: String, frame: FrameKind },

@@ -15,10 +15,7 @@ use toposlam_model::{
     percept::Door,
     world::World,
 };
-use toposlam_robot::{
-    explorer::{ExplorerError, RobotExplorer},
-    robot::Robot,
-};
+use toposlam_robot::{any_explorer::AnyExplorer, explorer::ExplorerError, robot::Robot};
 use toposlam_vision::geometry::unit;
 
 use super::run_sampler::RobotCase;
@@ -88,9 +85,9 @@ impl TraversalSampler {
         let config = SimulationConfig { pose, noise: self.noise, ..config };
 
         let (robot, sensor) = equipment.robot(&config, number);
-        let monitor = GroundTruthMonitor::at(&plan, marker, entry);
+        let monitor = GroundTruthMonitor::at(&plan, marker, entry).by(&sensor);
         let state = monitor.junction_state(pose);
-        let mut explorer = RobotExplorer::new(robot, sensor, (monitor, StoppedBy(watch)));
+        let mut explorer = AnyExplorer::new(robot, sensor, (monitor, StoppedBy(watch)));
         if let Some(state) = state {
             explorer = explorer.at_junction(state);
         }

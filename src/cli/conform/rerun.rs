@@ -126,7 +126,6 @@ fn print(out: &mut dyn Write, log: &Path, replay: &Replay, seconds: f64) -> Resu
     writeln!(out, "{}: the map is {whole}", printable(&log.display().to_string()))?;
     let (frame, frames) = match replay.frames {
         Role::Image => ("image", "images"),
-        Role::Scan => ("scan", "scans"),
         _ => ("scene", "scenes"),
     };
     writeln!(out, "  {frames:<11} {}", grouped(comparison.frames.into()))?;

@@ -2,11 +2,10 @@
 
 use std::io::Write;
 
-use toposlam_logs::record::RobotSensor;
 use toposlam_model::mapping::{FACING, MappingError};
 use toposlam_robot::{
-    corridors::CorridorExplorer,
-    explorer::{ExplorerError, RobotExplorer},
+    any_explorer::{AnyExplorer, RobotSensor},
+    explorer::ExplorerError,
     live::{LiveSensor, RobotTopics},
     robot::Robot,
     run_settings::{LaserVertices, RunSettings},
@@ -29,22 +28,20 @@ impl DriveArguments {
         self.options.check_places(false)?;
         let settings = self.options.settings(None)?;
         let sensors = self.sensors()?;
-        let corridors = self.corridors()?;
-        if corridors.is_some() && !settings.earlier.is_empty() {
+        let laser = self.laser_params()?;
+        if self.corridors && !settings.earlier.is_empty() {
             return Err(CliError::at(
                 "--resume",
                 "a run in --corridors does not go on from others",
             ));
         }
-        let hallways = sensors.is_none().then_some(LaserVertices::OF_HALLWAYS);
-        let laser = corridors.as_ref().map(LaserVertices::from).or(hallways);
-        let settings = RunSettings { laser, ..settings };
-        let (sensor, live, frame_kind) = match &sensors {
-            Some((camera, colours)) => {
+        let settings = RunSettings { laser: laser.as_ref().map(LaserVertices::from), ..settings };
+        let (sensor, live, frame_kind) = match (&sensors, laser) {
+            (Some((camera, colours)), _) => {
                 let sensor = Box::new(Sensor::new(camera, colours));
                 (RobotSensor::Camera(sensor), LiveSensor::Camera, "images")
             }
-            None => (RobotSensor::Laser(Box::default()), LiveSensor::Laser, "scans"),
+            (None, laser) => (laser.unwrap_or_default().into(), LiveSensor::Laser, "scans"),
         };
         always_stop_gracefully();
         let topics = RobotTopics {
@@ -67,15 +64,9 @@ impl DriveArguments {
         let head = format!("A robot {place}.");
         let mut capture = RunCapture::new(head, story_out, frame_kind, None)?;
         let observer = (&mut log, (&mut capture, &mut *published));
-        let (mapping, mapped, moves, robot) = if let Some(params) = &corridors {
-            let mut explorer = CorridorExplorer::new(robot, params, observer);
-            let (mapping, mapped) = explorer.map(&settings);
-            (mapping, mapped, explorer.moves(), explorer.into_parts().0)
-        } else {
-            let mut explorer = RobotExplorer::new(robot, sensor, observer);
-            let (mapping, mapped) = explorer.map(&settings);
-            (mapping, mapped, explorer.moves(), explorer.into_parts().0)
-        };
+        let mut explorer = AnyExplorer::new(robot, sensor, observer);
+        let (mapping, mapped) = explorer.map(&settings);
+        let (moves, (robot, _)) = (explorer.moves(), explorer.into_parts());
         let logged = self.options.close(log);
         let (seconds, frames) = (robot.odometry().time, robot.frames());
         // The robot is dropped last: the node of these topics belongs to it.
@@ -137,16 +128,15 @@ impl DriveArguments {
         Ok(Some((input::read_camera(camera)?, input::read_colours(colours)?)))
     }
 
-    /// How scans are sensed in a network of corridors; `None` in other buildings.
-    fn corridors(&self) -> Result<Option<LaserParams>, CliError> {
-        if !self.corridors {
-            return match self.laser.given() {
-                Some(option) => Err(CliError::at(option, "it has an effect only with --corridors")),
-                None => Ok(None),
-            };
-        }
+    /// How scans are sensed; `None` by a camera.
+    fn laser_params(&self) -> Result<Option<LaserParams>, CliError> {
         if self.sensor != SensorChoice::Laser {
-            return Err(CliError::at("--corridors", "add --sensor laser"));
+            let given = self.corridors.then_some("--corridors").or(self.laser.given());
+            let needed = |option| Err(CliError::at(option, "add --sensor laser"));
+            return given.map_or(Ok(None), needed);
+        }
+        if !self.corridors {
+            return self.laser.params(Some(LaserVertices::OF_HALLWAYS)).map(Some);
         }
         let params = self.laser.params(None)?;
         if params.corner.corners {

@@ -1,9 +1,6 @@
 //! The junctions of the way graph, its corners and its dead ends.
 
-use std::f64::consts::PI;
-
 use nalgebra::{Point2, Vector2};
-use toposlam_model::driving::scene::wrapped;
 
 use super::{
     ends::WayEnd,
@@ -116,7 +113,7 @@ impl Way {
             let before = (0..at).rev().find(|&i| lengths[at] - lengths[i] >= params.arm)?;
             let after = (at..line.len()).find(|&i| lengths[i] - lengths[at] >= params.arm)?;
             let arms = [before, after].map(|arm| direction(line[at].0, line[arm].0));
-            let turn = PI - wrapped(arms[0] - arms[1]).abs();
+            let turn = CornerParams::bend(arms);
             (turn >= params.min_turn).then_some((turn, arms))
         };
         let mut corners = Vec::new();

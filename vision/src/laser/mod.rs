@@ -16,8 +16,6 @@
 //! * [`local_map`]: all of these steps on one map;
 //! * [`sensor`]: the views of a robot that drives, and [`pictures`] of them;
 //! * [`scan_log`]: the views of a log, by all of its scans, of which `scan_choice` takes some, and by those of other `passes`.
-//!
-//! [`scene`] is another way, for the small buildings with right angles of Algorithm 2.
 
 #![allow(clippy::cast_possible_wrap, reason = "a map has far fewer cells")]
 
@@ -38,7 +36,6 @@ pub mod scan;
 mod scan_choice;
 pub mod scan_log;
 pub mod scan_motion;
-pub mod scene;
 pub mod sensor;
 mod skeleton;
 #[cfg(test)]

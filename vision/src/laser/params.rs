@@ -12,7 +12,8 @@
 //! * [`ArmParams::min_arm`], if corridors are shorter than 10 m between junctions and ends, or rooms deeper;
 //! * [`LocalMapParams::min_width`], if corridors are narrower than 1.2 m, or doors of rooms wider;
 //! * [`ArmParams::min_width`] and [`ArmParams::max_width`], if corridors are not about 2 m wide;
-//! * [`CornerParams::corners`], if bends and dead ends are vertices of the world;
+//! * [`CornerParams::corners`], if bends and dead ends are vertices of the world ([`LaserParams::HALLWAYS`], if
+//!   hallways are short, too);
 //! * [`MatchingParams::rounds`] (8), if the heading of odometry drifts and the log is sensed live, before its drift can
 //!   be measured;
 //! * [`LocalMapParams::memory`], if odometry drifts more than a cell on 18 m;
@@ -276,6 +277,33 @@ params! {
 }
 
 impl LaserParams {
+    /// For buildings in which corners are vertices, with hallways that are 1.4 to 2 m wide and places from 2.8 m apart. A robot
+    /// there stands at a place before it goes on, so it needs no more of the building than what is around it; its odometry may
+    /// drift, and walls are near enough to be matched. Simulated buildings, those of `evaluate runs --seed 1`.
+    pub const HALLWAYS: Self = Self {
+        matching: MatchingParams { rounds: 8, ..MatchingParams::DEFAULT },
+        map: LocalMapParams {
+            cell: 0.08,
+            reach: 8.0,
+            memory: 6.0,
+            every: 0.3,
+            min_width: 1.0,
+            ..LocalMapParams::DEFAULT
+        },
+        arm: ArmParams {
+            min_arm: 3.0,
+            min_possible: 2.0,
+            sight: 3.0,
+            min_width: 0.95,
+            around_obstacle: 5.0,
+            border_near: 0.9,
+            ..ArmParams::DEFAULT
+        },
+        corner: CornerParams { corners: true, arm: 1.5, min_way: 2.0, ..CornerParams::DEFAULT },
+        visit: VisitParams { range: 2.5, same: 1.0, inside: 0.5, ..VisitParams::DEFAULT },
+        ..Self::DEFAULT
+    };
+
     /// The same for a scanner of this range, in metres. In a corridor the readings between the farthest points of its walls that
     /// a scanner reaches have no return: they show that nothing is nearer. And a way is known no farther than its range. What
     /// a user has set stays.
@@ -314,6 +342,23 @@ impl LocalMapParams {
     }
 }
 
+impl CornerParams {
+    /// The angle by which a way bends that comes from one direction and goes in another.
+    pub fn bend([one, other]: [f64; 2]) -> f64 {
+        PI - wrapped(one - other).abs()
+    }
+
+    /// Whether a bend by this angle is that of a corner, and not of a robot that turns back.
+    pub fn is_bend(&self, angle: f64) -> bool {
+        (self.min_turn..self.max_turn).contains(&angle)
+    }
+
+    /// Whether a place with ways in these directions is a vertex.
+    pub fn is_corner(&self, ways: [f64; 2]) -> bool {
+        self.corners && self.is_bend(Self::bend(ways))
+    }
+}
+
 impl VisitParams {
     /// A robot this near to the centre of a junction is inside, in metres.
     pub(crate) fn radius(&self, clearance: f64) -> f64 {
@@ -324,7 +369,7 @@ impl VisitParams {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::params::read;
+    use crate::params::{read, read_over};
 
     #[test]
     fn a_file_changes_what_is_in_it_and_nothing_else() {
@@ -338,6 +383,20 @@ mod tests {
         // A whole number is as good as any other.
         let params: LaserParams = read("[arm]\nmin_gap = 0").unwrap();
         assert!(params.arm.min_gap.abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_file_changes_other_parameters_than_the_default_in_the_same_way() {
+        let text = "[arm]\nmin_arm = 4\n[corner]\ncorners = false";
+        let mut expected = LaserParams::HALLWAYS;
+        expected.arm.min_arm = 4.0;
+        expected.corner.corners = false;
+        assert_eq!(read_over(&LaserParams::HALLWAYS, text), Ok(expected));
+        assert_eq!(read_over(&LaserParams::HALLWAYS, ""), Ok(LaserParams::HALLWAYS));
+        assert_eq!(
+            read_over(&LaserParams::HALLWAYS, "[arm]\nmin = 2.0").unwrap_err(),
+            read::<LaserParams>("[arm]\nmin = 2.0").unwrap_err()
+        );
     }
 
     /// With 30 m nothing changes; with 3.5 m a corridor 2 m wide shows walls up to 17 degrees from its axis.

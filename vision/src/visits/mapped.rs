@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     geometry::{direction, distance, in_steps},
-    laser::params::LaserParams,
+    laser::params::{CornerParams, LaserParams},
     place::{Certainty, PlaceArm, PlaceView, SeenPlace, nearest_direction},
 };
 
@@ -435,7 +435,7 @@ impl<S: Copy + Default> MappedRule<S> {
         // Where the robot went on, its own way shows whether there is a corner.
         let went_on = matches!(ways, [Some(entry), Some(exit)] if !self.is_same(entry, exit));
         let is_corner = |one: f64, other: f64| {
-            corner.corners && !went_on && PI - wrapped(one - other).abs() >= corner.min_turn
+            corner.corners && !went_on && CornerParams::bend([one, other]) >= corner.min_turn
         };
         // What may be doors, and those that are.
         let (mut may, mut doors) = (0, Vec::new());

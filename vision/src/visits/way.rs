@@ -1,9 +1,8 @@
 //! The way of a robot on the local map: where it bends, and where the scanner does not look.
 
-use std::{collections::VecDeque, f64::consts::PI};
+use std::collections::VecDeque;
 
 use nalgebra::Point2;
-use toposlam_model::driving::scene::wrapped;
 
 use crate::{
     geometry::{direction, distance},
@@ -42,7 +41,7 @@ impl<S: Copy> Bends<S> {
     /// Adds the next point of the way, which has this length. Returns the bends that are over now.
     pub(super) fn add(&mut self, point: Point2<f64>, way: f64, at: S) -> Vec<PassedBend<S>> {
         self.points.push_back((point, way, at));
-        let CornerParams { arm, min_turn, max_turn, memory, .. } = self.params;
+        let CornerParams { arm, memory, .. } = self.params;
         let mut bends = Vec::new();
         while let Some(&(middle, way, at)) = self.points.get(self.judged) {
             if distance(middle, point) < arm {
@@ -54,9 +53,9 @@ impl<S: Copy> Bends<S> {
             let bend = before.zip(after).map(|(before, after)| {
                 let arms = [before, after].map(|other| direction(middle, other.0));
                 let bend = PassedBend { point: middle, arms, way, at };
-                (PI - wrapped(arms[0] - arms[1]).abs(), bend)
+                (CornerParams::bend(arms), bend)
             });
-            match bend.filter(|(turn, _)| (min_turn..max_turn).contains(turn)) {
+            match bend.filter(|&(turn, _)| self.params.is_bend(turn)) {
                 None => bends.extend(self.sharpest.take().map(|(_, bend)| bend)),
                 Some((turn, _)) if self.sharpest.is_some_and(|(most, _)| turn <= most) => {}
                 bend => self.sharpest = bend,
@@ -109,7 +108,7 @@ pub(super) fn distance_to_piece(point: Point2<f64>, [from, to]: [Point2<f64>; 2]
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
     use nalgebra::Isometry2;
     use toposlam_model::driving::odometry::Odometry;

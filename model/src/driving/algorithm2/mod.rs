@@ -10,7 +10,7 @@ mod lost;
 use std::f64::consts::{FRAC_PI_4, PI};
 
 pub use dead_reckoning::{CREEP, IDLE, LEG, STALLS, UNKNOWNS};
-pub use lost::{FrameKind, Lost, LostReason};
+pub use lost::{Lost, LostReason};
 
 use super::{
     odometry::Odometry,

@@ -5,7 +5,7 @@ use std::{io::Write, iter};
 
 use serde_json::json;
 use toposlam_model::{mapping::MappingAlgorithm, measurement::MeasurementContradiction};
-use toposlam_simulator::evaluation::bound::upper_bound;
+use toposlam_simulator::{RobotEquipment, evaluation::bound::upper_bound};
 use toposlam_terminal::{
     CliError, Outcome, exit_codes::help_end, progress::must_stop, text::counted,
 };
@@ -33,7 +33,6 @@ use toposlam_simulator::evaluation::{
     "\
 Examples:
   evaluate lengths                       takes about half a minute
-  evaluate lengths --sensor laser --traversals 2000
   evaluate lengths --plan worlds/shape-6.toml --traversals 500 --json",
     &[
         (0, "the target is met"),
@@ -64,6 +63,11 @@ impl EvaluateLengthsArguments {
         let sampler =
             RunSampler::new(plans, usize::MAX, 0, seed, noise, MappingAlgorithm::Algorithm1);
         let equipment = self.robots.equipment()?;
+        if matches!(equipment, RobotEquipment::Laser(_)) {
+            let cause =
+                "a robot with a scanner drives into arms on its way, and measures no hallways";
+            return Err(CliError::at("--sensor", cause));
+        }
         let numbers = 0..sampler.runs_with(self.traversals);
         let runs = measure("runs", "runs", numbers, |number, watch| {
             sampler.measured(number, &equipment, watch)

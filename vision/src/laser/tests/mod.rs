@@ -13,7 +13,6 @@ use crate::geometry::unit;
 mod grid;
 mod navigation;
 mod pictures;
-mod places;
 mod poses;
 mod ray_counts;
 mod rays;
