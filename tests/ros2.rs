@@ -375,20 +375,25 @@ fn tests_at_a_time_have_different_domains() {
 
 /// It is refused before a robot is looked for.
 #[test]
-fn bends_are_no_vertices_of_a_robot_in_corridors() {
+fn bends_are_no_vertices_in_corridors_and_corners_are_vertices_in_hallways() {
     let stage = Stage::new("corners");
     let params = stage.path("params.toml");
-    let refused = |text: &str| {
+    let refused = |options: &[&str], text: &str| {
         fs::write(&params, text).unwrap();
-        let drive = ["drive", "--ros2", "--sensor", "laser", "--corridors"];
-        let mut command = stage.toposlam(&[&drive[..], &["--laser-params", &params]].concat());
+        let drive = ["drive", "--ros2", "--sensor", "laser", "--laser-params", &params];
+        let mut command = stage.toposlam(&[&drive[..], options].concat());
         let output = command.env("ROS_DOMAIN_ID", "233").output().unwrap();
         assert_eq!(output.status.code(), Some(2));
         stderr(&output)
     };
     let expected = "--laser-params: corner.corners is true, but a robot in corridors takes no bend for a vertex; set it to false";
-    assert!(refused("[corner]\ncorners = true\n").contains(expected));
-    assert!(refused("[corner]\ncorners = false\n").contains("ROS_DOMAIN_ID"));
+    let (corners, none) = ("[corner]\ncorners = true\n", "[corner]\ncorners = false\n");
+    let corridors = ["--corridors"];
+    assert!(refused(&corridors, corners).contains(expected));
+    assert!(refused(&corridors, none).contains("ROS_DOMAIN_ID"));
+    let expected = "--laser-params: corner.corners is false, but a robot in hallways takes corners for vertices; set it to true, or add --corridors";
+    assert!(refused(&[], none).contains(expected));
+    assert!(refused(&[], corners).contains("ROS_DOMAIN_ID"));
 }
 
 #[test]

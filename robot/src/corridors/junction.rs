@@ -67,11 +67,11 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             let (driven, is_arm) = self.look_into(way, true)?;
             tried.push(way);
             let is_arm = is_arm.ok_or(CorridorFailure::Undecided)?;
-            if is_arm && !doors.iter().any(|&door| is_same(door, driven)) {
+            if is_arm && !doors.iter().any(|&door| self.driving.is_same_arm(door, driven)) {
                 doors.push(driven);
             }
         }
-        in_order(doors, entry, &self.params.corner)
+        in_order(doors, entry, self.driving, &self.params.corner)
     }
 
     /// The directions of the ways that leave an opening in at least two of the views there.
@@ -101,7 +101,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         let mut known: Vec<(f64, bool)> = Vec::new();
         let (mut has_moved, mut tries, mut centred) = (false, 0, 0);
         for _ in 0..self.driving.looks {
-            let Some(place) = self.visits.status() else {
+            let status = self.visits.status().map(|place| self.unless_mistaken(place));
+            let Some(place) = status else {
                 let robot = self.on_local_map();
                 let off = |seen: &&SeenPlace| distance(seen.centre, robot);
                 let near = nearest(self.seen.last().into_iter().flatten(), off)
@@ -118,9 +119,12 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             }
             let turn = self.turn_of_map();
             last.clone_from(&place);
-            let is_known = |arm: f64| known.iter().any(|known| is_same(known.0, arm));
+            let is_known =
+                |arm: f64| known.iter().any(|known| self.driving.is_same_arm(known.0, arm));
             let uncertain = self.uncertain_arms(&place).into_iter().map(|arm| wrapped(arm + turn));
-            let next = uncertain.into_iter().find(|&arm| !is_same(arm, entry) && !is_known(arm));
+            let next = uncertain
+                .into_iter()
+                .find(|&arm| !self.driving.is_same_arm(arm, entry) && !is_known(arm));
             if let Some(arm) = next {
                 let (_, is_arm) = self.look_into(arm, false)?;
                 known.push((arm, is_arm.ok_or(CorridorFailure::Undecided)?));
@@ -147,14 +151,27 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             let mut doors: Vec<f64> = doors.into_iter().map(|door| wrapped(door + turn)).collect();
             for &(arm, is_arm) in &known {
                 if !is_arm {
-                    doors.retain(|&door| !is_same(door, arm));
-                } else if !doors.iter().any(|&door| is_same(door, arm)) {
+                    doors.retain(|&door| !self.driving.is_same_arm(door, arm));
+                } else if !doors.iter().any(|&door| self.driving.is_same_arm(door, arm)) {
                     doors.push(arm);
                 }
             }
-            return in_order(doors, entry, &self.params.corner);
+            return in_order(doors, entry, self.driving, &self.params.corner);
         }
         Err(CorridorFailure::Undecided.into())
+    }
+
+    /// A place without arms looked like one in earlier views alone. Then the junction is the one that the last view shows beside
+    /// it, if each of its arms is certain.
+    fn unless_mistaken(&self, place: SeenPlace) -> SeenPlace {
+        if !place.arms.is_empty() {
+            return place;
+        }
+        let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
+        let beside = seen_at(view, &place, self.driving.same_place);
+        let is_certain =
+            |seen: &&SeenPlace| seen.arms.len() >= 3 && seen.arms.iter().all(PlaceArm::is_certain);
+        beside.filter(is_certain).cloned().unwrap_or(place)
     }
 
     /// Goes to the centre of a place, as the last view shows it, and looks around there. Returns whether it was farther away.
@@ -232,7 +249,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         for seen in views.iter().filter_map(|view| seen_at(view, place, self.driving.at_centre)) {
             for arm @ &PlaceArm { direction, .. } in &seen.arms {
                 let certain = usize::from(arm.is_certain());
-                match arms.iter_mut().find(|known| is_same(known.0, direction)) {
+                match arms.iter_mut().find(|known| self.driving.is_same_arm(known.0, direction)) {
                     Some(known) => (known.1, known.2) = (known.1 + 1, known.2 + certain),
                     None => arms.push((direction, 1, certain)),
                 }
@@ -272,15 +289,12 @@ fn seen_at<'v>(view: &'v [SeenPlace], place: &SeenPlace, near: f64) -> Option<&'
     nearest(view, off).filter(|seen| off(seen) < place.clearance.max(near))
 }
 
-fn is_same(one: f64, other: f64) -> bool {
-    wrapped(one - other).abs() < CorridorParams::DEFAULT.same_arm
-}
-
 /// The directions of doors, clockwise from the one by which the robot came in, from about this direction; `None` if they are
 /// not those of a vertex: a junction with at least three, or a corner.
 fn in_order(
     mut doors: Vec<f64>,
     entry: f64,
+    driving: &CorridorParams,
     corner: &CornerParams,
 ) -> Result<Option<Vec<f64>>, Stop> {
     let is_vertex = match doors[..] {
@@ -291,8 +305,7 @@ fn in_order(
         return Ok(None);
     }
     let off = |door: &f64| wrapped(door - entry).abs();
-    let first = nearest(doors.iter().copied(), off)
-        .filter(|door| off(door) < CorridorParams::DEFAULT.entry);
+    let first = nearest(doors.iter().copied(), off).filter(|door| off(door) < driving.entry);
     let first = first.ok_or(CorridorFailure::Undecided)?;
     let turn = |door: f64| {
         let turn = clockwise(first, door);
@@ -308,7 +321,7 @@ mod tests {
 
     /// The doors in order; empty if the robot does not know which of them it drove.
     fn order(doors: &[f64], entry: f64, corner: &CornerParams) -> Option<Vec<f64>> {
-        match in_order(doors.to_vec(), entry, corner) {
+        match in_order(doors.to_vec(), entry, &CorridorParams::DEFAULT, corner) {
             Ok(doors) => doors,
             Err(Stop::Failure(CorridorFailure::Undecided)) => Some(Vec::new()),
             Err(Stop::Failure(_) | Stop::Error(_)) => panic!(),

@@ -88,7 +88,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             }
         }
         let here = self.marker_at(centre, extent);
-        let here = here.and_then(|seen| door_along(&seen, centre, doors));
+        let here = here.and_then(|seen| door_along(&seen, centre, doors, self.driving));
         let other = match here {
             Some(door) => OtherRobot::HereAlong(door),
             None => OtherRobot::Elsewhere {
@@ -133,17 +133,22 @@ impl<R: Robot, O: RunObserver> AidHandler for CorridorExplorer<R, O> {
 }
 
 /// The door in about a direction.
-fn door_towards(towards: f64, doors: &[f64]) -> Option<Door> {
+fn door_towards(towards: f64, doors: &[f64], driving: &CorridorParams) -> Option<Door> {
     let off = |door: &usize| wrapped(doors[*door] - towards).abs();
     let door = nearest(0..doors.len(), off);
-    door.filter(|door| off(door) < CorridorParams::DEFAULT.same_arm).map(|door| Door(door as u32))
+    door.filter(|door| off(door) < driving.same_arm).map(|door| Door(door as u32))
 }
 
 /// The door along the longer side of what is seen, on the side where it lies.
-fn door_along(seen: &SeenMarker, centre: Point2<f64>, doors: &[f64]) -> Option<Door> {
+fn door_along(
+    seen: &SeenMarker,
+    centre: Point2<f64>,
+    doors: &[f64],
+    driving: &CorridorParams,
+) -> Option<Door> {
     let towards = direction(centre, seen.at);
     let is_along = |door: &usize| {
-        undirected(doors[*door] - seen.axis).abs() < CorridorParams::DEFAULT.same_arm
+        undirected(doors[*door] - seen.axis).abs() < driving.same_arm
             && wrapped(doors[*door] - towards).abs() < FRAC_PI_2
     };
     let off = |door: &usize| wrapped(doors[*door] - towards).abs();
@@ -159,7 +164,7 @@ fn door_of(
     driving: &CorridorParams,
 ) -> Option<Door> {
     if distance(marker.at, centre) > driving.marker_off {
-        return door_towards(direction(centre, marker.at), doors);
+        return door_towards(direction(centre, marker.at), doors, driving);
     }
     let off = |door: &usize| undirected(doors[*door] - marker.axis).abs();
     let mut along = (0..doors.len()).filter(|door| off(door) < driving.same_arm);
@@ -193,7 +198,7 @@ mod tests {
     fn a_robot_that_waits_is_seen_in_its_hallway_though_it_is_off_the_middle() {
         let seen = |at: [f64; 2], axis: f64| {
             let seen = SeenMarker { at: at.into(), axis, way: 0.0 };
-            door_along(&seen, Point2::origin(), &[PI, FRAC_PI_2, 0.0])
+            door_along(&seen, Point2::origin(), &[PI, FRAC_PI_2, 0.0], &CorridorParams::DEFAULT)
         };
         assert_eq!(seen([0.3, 0.4], 0.1), Some(Door(2)), "in the hallway ahead, to its left");
         assert_eq!(seen([0.3, 0.4], 1.5), Some(Door(1)));

@@ -3,6 +3,7 @@
 //! Lengths are in metres and angles in radians. The default values are for corridors that are about 2 m wide, and the others
 //! for hallways that are 1.4 to 2 m wide, with junctions from 2.8 m apart.
 
+use toposlam_model::driving::scene::wrapped;
 use toposlam_vision::params;
 
 params! {
@@ -148,5 +149,10 @@ impl CorridorParams {
     /// Those of a robot in a building in which corners are vertices, or are not.
     pub(super) fn for_corners(corners: bool) -> &'static Self {
         if corners { &Self::HALLWAYS } else { &Self::DEFAULT }
+    }
+
+    /// Whether two directions are of one arm.
+    pub(super) fn is_same_arm(&self, one: f64, other: f64) -> bool {
+        wrapped(one - other).abs() < self.same_arm
     }
 }

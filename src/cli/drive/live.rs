@@ -135,16 +135,19 @@ impl DriveArguments {
             let needed = |option| Err(CliError::at(option, "add --sensor laser"));
             return given.map_or(Ok(None), needed);
         }
-        if !self.corridors {
-            return self.laser.params(Some(LaserVertices::OF_HALLWAYS)).map(Some);
-        }
-        let params = self.laser.params(None)?;
-        if params.corner.corners {
-            let cause = "corner.corners is true, but a robot in corridors takes no bend for a vertex; \
-                         set it to false";
-            return Err(CliError::at("--laser-params", cause));
-        }
-        Ok(Some(params))
+        let hallways = (!self.corridors).then_some(LaserVertices::OF_HALLWAYS);
+        let params = self.laser.params(hallways)?;
+        let cause = match (self.corridors, params.corner.corners) {
+            (true, true) => {
+                "corner.corners is true, but a robot in corridors takes no bend for a vertex; set it to false"
+            }
+            (false, false) => {
+                "corner.corners is false, but a robot in hallways takes corners for vertices; set it to true, \
+                 or add --corridors"
+            }
+            _ => return Ok(Some(params)),
+        };
+        Err(CliError::at("--laser-params", cause))
     }
 
     /// The name of a topic.

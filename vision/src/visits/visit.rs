@@ -9,7 +9,10 @@ use toposlam_model::{
     percept::Sighting,
 };
 
-use crate::place::{Certainty, PlaceArm, nearest_direction};
+use crate::{
+    laser::params::CornerParams,
+    place::{Certainty, PlaceArm, nearest_direction},
+};
 
 /// The visits of a robot, in their order.
 #[derive(Clone, Debug, Default)]
@@ -144,7 +147,7 @@ impl<S> Visit<S> {
 
     fn is_vertex(&self, arms: &[f64]) -> bool {
         match (arms, self.least_bend) {
-            (&[one, other], Some(least)) => PI - wrapped(one - other).abs() >= least,
+            (&[one, other], Some(least)) => CornerParams::bend([one, other]) >= least,
             ([_, _, _, ..], _) | ([_], Some(_)) => true,
             _ => false,
         }
