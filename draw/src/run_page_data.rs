@@ -34,6 +34,11 @@ pub struct RunPageData {
 }
 
 impl RunPageData {
+    /// Whether the robot drove by scenes, and so by Algorithm 2.
+    pub(crate) fn has_scenes(&self) -> bool {
+        self.rounds.iter().any(|round| round.scene.is_some())
+    }
+
     /// The map whenever it grew, up to a number of steps.
     pub(crate) fn maps(&self, steps: usize) -> impl Iterator<Item = &PartialMap> {
         let steps = self.steps.iter().take(steps);
@@ -57,9 +62,9 @@ pub struct PageFrame {
     pub pose: Pose,
     /// The number of moves begun before it.
     pub moves: u64,
-    /// The state of Algorithm 2 after it.
+    /// The state of Algorithm 2 after it, if the run has scenes.
     pub state: PathState,
-    /// `None` if the robot looked around.
+    /// `None` by a laser scanner.
     pub scene: Option<Scene>,
     /// What the robot did; `None` if a path ended.
     pub command: Option<Command>,

@@ -324,10 +324,11 @@ fn visits_without_odometry_or_in_a_building_that_is_no_network_of_corridors_deci
     }
 }
 
-/// Records a run, and doubts what is seen near a point.
+/// Records a run, and doubts what is seen near a point. After so many arrivals odometry is turned.
 struct Doubtful<O> {
     log: O,
     near: Option<[f64; 2]>,
+    turned_after: Option<usize>,
     /// Where the robot was at each arrival.
     arrivals: Vec<[f64; 2]>,
     at: [f64; 2],
@@ -336,6 +337,7 @@ struct Doubtful<O> {
 impl<O: RunObserver> RunObserver for Doubtful<O> {
     fn event(&mut self, event: &Event) {
         let mut event = event.clone();
+        let is_turned = self.turned_after.is_some_and(|arrivals| self.arrivals.len() > arrivals);
         match &mut event.kind {
             EventKind::Frame(Frame { scene: Some(Scene { place, .. }), odometry, .. }) => {
                 self.at = odometry.position;
@@ -348,7 +350,11 @@ impl<O: RunObserver> RunObserver for Doubtful<O> {
                 {
                     *confidence = 0.5;
                 }
+                if is_turned {
+                    odometry.heading = odometry.whither(0.7);
+                }
             }
+            EventKind::Odometry(odometry) if is_turned => odometry.heading = odometry.whither(0.7),
             EventKind::Arrival(_) => self.arrivals.push(self.at),
             _ => {}
         }
@@ -356,8 +362,9 @@ impl<O: RunObserver> RunObserver for Doubtful<O> {
     }
 }
 
-/// The log of a run of the folding explorer in shape 8, and its head. The scenes near one of its visits are in doubt.
-fn doubtful_log(visit: usize) -> (Vec<u8>, messages::Run) {
+/// The log of a run of the folding explorer in shape 8, and its head. The scenes near one of its visits are in doubt, and
+/// after another one odometry is turned.
+fn doubtful_log(visit: usize, turned_after: Option<usize>) -> (Vec<u8>, messages::Run) {
     let (plan, facing) = place_in("shape-8");
     let settings = RunSettings::new(MappingAlgorithm::Folding, DARTS);
     let head = head_of(&settings);
@@ -367,7 +374,8 @@ fn doubtful_log(visit: usize) -> (Vec<u8>, messages::Run) {
         let robot = SimulationConfig { keeps_track: true, ..robot }.by_scene();
         let arrivals = {
             let log = Recorder::new(&mut bytes, &head, None).unwrap();
-            let mut observer = Doubtful { log, near, arrivals: Vec::new(), at: [0.0; 2] };
+            let mut observer =
+                Doubtful { log, near, turned_after, arrivals: Vec::new(), at: [0.0; 2] };
             run(&plan, facing, robot, RobotSensor::Scenes, &mut observer, &settings);
             observer.log.finish().unwrap();
             observer.arrivals
@@ -386,7 +394,7 @@ fn scenes_that_do_not_decide_a_visit_are_judged_as_sets() {
     };
     let (own, other) = (world_of("shape-8"), world_of("shape-6"));
     for visit in 1..8 {
-        let (log, head) = doubtful_log(visit);
+        let (log, head) = doubtful_log(visit, None);
         let judged = |world, doors| {
             let scenes = Question::new(&log, Evidence::Scenes);
             let checked =
@@ -411,4 +419,16 @@ fn scenes_that_do_not_decide_a_visit_are_judged_as_sets() {
         let elsewhere = judged(Some(&other), DoorChooser::Anyone);
         assert_ne!(elsewhere.0, ConformVerdict::Conforms, "{visit}");
     }
+}
+
+/// Its scenes show that it left beside a door, but the door that it took before may have been another one.
+#[test]
+fn scenes_of_a_robot_that_strayed_are_not_judged_as_sets() {
+    let (log, _) = doubtful_log(3, Some(6));
+    let doors = DoorChooser::Anyone;
+    let checked = Question { doors, ..Question::new(&log, Evidence::Scenes) }.checked().unwrap();
+    let strayed = |event: &CheckedEvent| matches!(event.kind, CheckedKind::LeftBetweenDoors { .. });
+    assert!(checked.extracted.events.events.iter().any(strayed));
+    let judgement = checked.judgement;
+    assert_eq!((judgement.verdict(), judgement.possible), (ConformVerdict::NotKnown, None));
 }

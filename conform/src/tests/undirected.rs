@@ -76,7 +76,7 @@ fn a_marker_that_is_seen_at_two_different_junctions_fits_no_world() {
     assert_eq!((found.event, why), (8, Impossibility::OnePlace));
 }
 
-/// Figure 1: no robot with an undirected marker can tell these worlds apart.
+/// Figure 1: with an undirected marker no walk distinguishes these worlds.
 #[test]
 fn another_world_explains_a_walk_in_figure_1_unless_it_diverges() {
     let text = include_bytes!("../../../worlds/figure-1a.toml");

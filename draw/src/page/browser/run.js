@@ -55,9 +55,12 @@ function showCamera({ image: number }) {
 function showFacts(round) {
   write(".time", `${round.time} min`);
   write(".move", `${round.moves} of ${rounds[last].moves}`);
-  write(".state", round.state);
-  write(".scene", round.scene);
-  write(".command", round.command);
+  // A robot that drives by scans has none of these.
+  if (round.state) {
+    write(".state", round.state);
+    write(".scene", round.scene);
+    write(".command", round.command);
+  }
   const call = called.get(at);
   const judged = call?.conforms ? "as specified" : "not as specified";
   find(".called").classList.toggle("later", !call);
@@ -111,7 +114,7 @@ function show(number, duration = 0) {
   slider.setAttribute("aria-valuetext", now);
   write(".now", now);
   // For screen readers: the current frame, but not while the run plays.
-  if (timer === null) write("[role=status]", `${now}, ${round.state}: ${round.scene}`);
+  if (timer === null) write("[role=status]", round.state ? `${now}, ${round.state}: ${round.scene}` : now);
 }
 
 // Playing.

@@ -28,7 +28,13 @@ pub(super) fn json(run_data: &RunPageData, drawn: &Drawn) -> String {
         let steps = if nth == last { run_data.steps.len() } else { frame.steps };
         let known = [lines[steps], run_data.maps(steps).count()];
         let aid = run_data.aid.moves().then(|| aid.map_or(Value::Null, place_of_aid));
-        round(frame, (*at, aid), known, &mut album)
+        let mut fields = round(frame, (*at, aid), known, &mut album);
+        if run_data.has_scenes() {
+            fields["state"] = words::state(frame.state).into();
+            fields["scene"] = frame.scene.as_ref().map(scene::in_words).unwrap_or_default().into();
+            fields["command"] = words::command(frame.command).into();
+        }
+        fields
     });
     let rounds: Vec<_> = rounds.collect();
     in_script(&json!({
@@ -72,9 +78,6 @@ fn round<'a>(
         // Clockwise on the screen, in degrees.
         "turn": rounded(-round.pose.heading.to_degrees()),
         "moves": round.moves,
-        "state": words::state(round.state),
-        "scene": round.scene.as_ref().map(scene::in_words).unwrap_or_default(),
-        "command": words::command(round.command),
         "image": round.image.as_ref().map(|jpeg| album.place(jpeg)),
         "story": story,
         "maps": maps,

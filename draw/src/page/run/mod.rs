@@ -14,6 +14,8 @@ use crate::{
 const PAGE: &str = include_str!("../browser/run.html");
 /// The panel of the images.
 const CAMERA: &str = include_str!("../browser/camera.html");
+/// What Algorithm 2 sees and does.
+const DRIVING: &str = include_str!("../browser/driving.html");
 /// In the order of their dependencies; they share one scope.
 const SCRIPT: [&str; 4] = [
     PAGE_SCRIPT,
@@ -27,6 +29,7 @@ pub fn run_page(run_data: &RunPageData) -> String {
     let drawn = run_drawing(run_data);
     let has_images = run_data.rounds.iter().any(|round| round.image.is_some());
     let (layout, camera) = if has_images { ("", CAMERA) } else { (" no-camera", "") };
+    let driving = if run_data.has_scenes() { DRIVING } else { "" };
     filled(
         PAGE,
         &[
@@ -36,6 +39,7 @@ pub fn run_page(run_data: &RunPageData) -> String {
             ("layout", layout),
             ("plan", &drawn.svg),
             ("camera", camera),
+            ("driving", driving),
             ("maps", &maps(run_data)),
             ("data", &data::json(run_data, &drawn)),
             ("script", &SCRIPT.concat()),
@@ -99,6 +103,19 @@ mod tests {
         let page = run_page(&run_data);
         assert!(!page.contains(camera) && !page.contains("No image was kept"));
         assert!(page.contains("<div class=\"run no-camera\">"));
+    }
+
+    /// A robot that drives by scans makes no scenes, and has no state of Algorithm 2.
+    #[test]
+    fn a_run_without_scenes_shows_no_state_of_algorithm_2() {
+        let mut run_data = example::run_page_data();
+        let state = "<dd class=\"state\">";
+        assert!(run_page(&run_data).contains(state));
+        run_data.rounds.iter_mut().for_each(|round| round.scene = None);
+        let page = run_page(&run_data);
+        assert!(!page.contains(state));
+        let round = &data_of(&page)["rounds"][1];
+        assert!(["state", "scene", "command"].iter().all(|key| round.get(key).is_none()));
     }
 
     #[test]
