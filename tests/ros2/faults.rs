@@ -227,7 +227,7 @@ fn check_faults(name: &str, runs: &[FaultyRun]) {
         assert!(stage.end().contains(end), "{name}: {}", stage.end());
         // One period, and the time of a message.
         stage.check_commands("robot", PATIENCE.0 + 0.4);
-        assert!(stage.went("robot")[0] > 0.01 || name == "stuck", "{name}");
+        assert!(stage.went("robot")[0] > 0.02, "{name}");
     }
 }
 

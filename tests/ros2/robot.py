@@ -7,7 +7,7 @@ is switched on. Standard output has a line for each command, `command SECONDS SP
 speeds, and the real time since the last good odometry or scan, whichever is older.
 
 Faults are `KIND@BEGIN+SECONDS`, in the robot's time. They begin when the robot next begins to go ahead at so long after its
-first motion. `--fault` may be repeated:
+first motion, and has gone 2 cm. `--fault` may be repeated:
 
     lost         30 % of all messages
     late         messages come 0.3 s late
@@ -71,6 +71,8 @@ SCANNER = (0.08, -0.03, math.pi / 2)
 MARKER_SEEN = (0.2, 1.5)
 MARKER_BEFORE, BEFORE = 1.2, 9.0
 """How far the marker lies before the first junction of a network of corridors, and where the robot begins."""
+BEFORE_FAULT = 0.02
+"""The way that the robot has gone ahead when a fault begins, in metres."""
 WATCHDOG = 0.6
 """The wheels stop after this time without a command."""
 
@@ -137,6 +139,14 @@ class Fault:
 
 
 @dataclass
+class Leg:
+    """A way on which the robot goes ahead."""
+
+    begun: float
+    travelled: float = 0.0
+
+
+@dataclass
 class Link:
     """The messages of a topic, on their way."""
 
@@ -189,6 +199,7 @@ class Robot:
         self.commanded = -math.inf
         self.first_motion = math.inf
         self.last_speed = 0.0
+        self.leg = Leg(-math.inf)
         self.time = BEGINS
         self.travelled = 0.0
         self.nearest = math.inf
@@ -205,9 +216,7 @@ class Robot:
         if (speed, turning) != (0.0, 0.0):
             self.first_motion = min(self.first_motion, self.time)
         if speed > 0.01 >= self.last_speed:
-            for fault in self.options.fault:
-                if fault.begun == math.inf and self.time >= self.first_motion + fault.begin:
-                    fault.begun = self.time + self.options.delay + 0.1
+            self.leg = Leg(self.time)
         self.last_speed = speed
         self.commands.append((self.time + self.options.delay, [speed, turning]))
         self.commanded = self.time
@@ -246,6 +255,11 @@ class Robot:
         if free >= RADIUS:
             self.position = there
             self.travelled += abs(way)
+            self.leg.travelled += abs(way)
+        if self.leg.travelled > BEFORE_FAULT:
+            for fault in self.options.fault:
+                if fault.begun == math.inf and self.leg.begun >= self.first_motion + fault.begin:
+                    fault.begun = self.time
 
     def put_obstacle(self) -> None:
         """Something 0.8 m ahead, across the hallway."""
