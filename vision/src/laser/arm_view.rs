@@ -40,9 +40,11 @@ const THICK: f64 = 0.6;
 pub(super) struct ArmView {
     /// Whether free space is seen far enough on one straight line.
     pub is_far: bool,
+    /// The length of the longest straight line of free space, from the meet point on, in metres.
+    pub length: f64,
     /// How wide the wall is that faces one at the far end of what is seen, in metres: 0 if free space goes on unseen there.
     pub facing_wall: f64,
-    /// The parts of the longest straight line of free space beside which there is a straight wall: on the side with less of it, and on the other one.
+    /// The parts of this line beside which there is a straight wall: on the side with less of it, and on the other one.
     pub walled: [f64; 2],
 }
 
@@ -67,7 +69,7 @@ impl ArmView {
             line.iter().find(beyond).or(line.last()).map(|&(point, _)| point)
         };
         let Some((mouth, towards)) = behind(MOUTH).zip(behind(AHEAD)) else {
-            return Self { is_far: false, facing_wall: 0.0, walled: [0.0; 2] };
+            return Self { is_far: false, length: 0.0, facing_wall: 0.0, walled: [0.0; 2] };
         };
         let from = if distance(mouth, towards) > 0.5 { mouth } else { meet };
         let ahead = direction(from, towards);
@@ -95,7 +97,8 @@ impl ArmView {
         }
         let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, map));
         walled.sort_by(f64::total_cmp);
-        Self { is_far, facing_wall: facing_wall(&ends), walled }
+        let length = length + distance(longest.from, meet);
+        Self { is_far, length, facing_wall: facing_wall(&ends), walled }
     }
 }
 

@@ -264,13 +264,13 @@ impl WayGraph {
         let Some(end) = leaf.end else { return ArmStatus::Seen };
         let known = way.length + end.beyond;
         let is_closed = end.kind == WayEnd::Closed;
-        if way.length < meet.clearance + params.min_behind {
+        if known < meet.clearance + params.min_behind {
             return if is_closed { ArmStatus::Ended } else { ArmStatus::Unseen };
         }
         let behind = way.line.iter().position(|(point, _)| {
             distance(*point, meet.point) >= meet.clearance + params.min_behind
         });
-        let behind = way.line.get(behind.unwrap_or_default()..).unwrap_or_default();
+        let behind = behind.map_or(&[][..], |behind| &way.line[behind..]);
         let (driven, length) = (judge.driven(behind), length(behind));
         if driven + meet.clearance + params.min_behind >= params.min_arm {
             return ArmStatus::Driven;
@@ -285,7 +285,7 @@ impl WayGraph {
         };
         let widths = way.line.iter().filter(is_between).map(|&(_, clearance)| 2.0 * clearance);
         let width = median(widths).unwrap_or(2.0 * leaf.clearance);
-        let ArmView { is_far, facing_wall, walled: [less, more] } =
+        let ArmView { is_far, length: seen, facing_wall, walled: [less, more] } =
             ArmView::new(&way.line, (meet.point, meet.clearance), map, params.sight);
         let has_walls = less >= params.far_walls || more >= params.far_wall;
         if is_far && has_walls {
@@ -302,7 +302,8 @@ impl WayGraph {
             return if is_long { ArmStatus::Unseen } else { ArmStatus::Ended };
         }
         // A wall faces the junction, and it is not seen that the way bends there: it has a side that no scan shows.
-        if facing_wall >= params.facing_wall * width && less < params.bend_wall {
+        let faces_wall = facing_wall >= params.facing_wall * width;
+        if faces_wall && less < params.bend_wall {
             return ArmStatus::Unseen;
         }
         // As wide as a corridor; through the door of a room one sees more than its width.
@@ -310,10 +311,14 @@ impl WayGraph {
             && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
         // The door of a room is narrower, and behind it one sees more than its width.
         let is_door = width < params.min_width && end.gap > params.room_gap * width;
-        let may_lead_on = width <= params.max_width
-            && !is_door
+        let may_be_cut = !is_door
             && 2.0 * leaf.clearance >= params.unseen_width
             && end.gap >= params.unseen_gap * width;
+        // One wall of a corridor, which leads away beside free space.
+        let has_one_wall = !faces_wall
+            && more >= params.one_wall
+            && known.max(seen) >= meet.clearance + params.min_possible;
+        let may_lead_on = width <= params.max_width && (has_one_wall || may_be_cut);
         let is_unseen = || {
             let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, map);
             viewpoints.iter().filter_map(turn).any(|turn| turn >= params.unseen_turn)

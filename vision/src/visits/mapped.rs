@@ -362,8 +362,8 @@ impl<S: Copy + Default> MappedRule<S> {
         let seen = self.seen(stay);
         let is_settled = match stay.kind {
             StayKind::DeadEnd | StayKind::UnseenWay => true,
-            StayKind::Bend { .. } if seen.as_ref().is_some_and(|seen| !seen.is_vertex()) => true,
-            _ => seen.as_ref().is_some_and(|seen| seen.doubt.is_some()),
+            StayKind::Bend { .. } => seen.as_ref().is_some_and(|seen| !seen.is_vertex()),
+            StayKind::Junction | StayKind::PossibleJunction => false,
         };
         if is_settled {
             return seen;

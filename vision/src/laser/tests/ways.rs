@@ -310,7 +310,7 @@ fn a_wall_that_is_missing_on_one_side_is_not_beside_the_arm() {
     // Through glass on both sides nothing is a wall.
     let glass = [[[5.0, 30.0], [11.0, 11.5]], [[5.0, 30.0], [8.5, 9.0]]];
     let view = arm_view(&map(&[[[5.0, 30.0], [9.0, 11.0]]], &[&[WEST][..], &glass].concat()), 9.5);
-    assert_eq!(view, ArmView { is_far: true, facing_wall: 0.0, walled: [0.0, 0.0] });
+    assert_eq!((view.is_far, view.facing_wall, view.walled), (true, 0.0, [0.0; 2]));
 }
 
 #[test]
@@ -348,7 +348,7 @@ fn one_looks_along_an_arm_from_behind_the_walls_of_its_junction() {
     let line: Vec<_> =
         (0..200).map(|at| (Point2::new(10.0 + 0.1 * f64::from(at), 10.0), 1.0)).collect();
     let view = ArmView::new(&line, (line[0].0, 2.0), &map, 9.5);
-    assert_eq!(view, ArmView { is_far: true, facing_wall: 0.0, walled: [1.0, 1.0] });
+    assert_eq!((view.is_far, view.facing_wall, view.walled), (true, 0.0, [1.0; 2]));
 }
 
 #[test]
@@ -409,7 +409,8 @@ fn nothing_is_seen_from_outside_of_a_map() {
 fn nothing_is_seen_along_a_way_of_no_length() {
     let map = map(&[CORRIDOR], &[WEST, EAST]);
     let none = ArmView::new(&[], (Point2::new(10.0, 10.0), 1.0), &map, 9.5);
-    assert_eq!(none, ArmView { is_far: false, facing_wall: 0.0, walled: [0.0; 2] });
+    let nothing = ArmView { is_far: false, length: 0.0, facing_wall: 0.0, walled: [0.0; 2] };
+    assert_eq!(none, nothing);
 }
 
 #[test]
@@ -590,4 +591,30 @@ fn a_short_way_may_be_an_arm_if_the_scanner_did_not_look_at_its_end() {
     assert_eq!(status_of_unseen(1.375, 3.0, 1.1), "in doubt");
     assert_eq!(status_of_unseen(1.375, 7.0, 1.1), "unseen", "a room");
     assert_eq!(status_of_unseen(2.75, 5.0, 1.1), "unseen", "a hall");
+}
+
+/// [`status`] of a way to the north, 2 m wide and 8 m behind the corridor, of which nothing is known but what lies on one side
+/// of a slanted line from its west corner to its east wall; and of the wall, if it is seen. The scanner is that of
+/// [`status_of_unseen`].
+fn status_of_wedge(is_wall_seen: bool, turn: f64) -> &'static str {
+    let (way, behind) = north(2.0, 8.0);
+    // 0.25 m of the way are unseen from 11.5 m north on, and each metre 0.25 m more.
+    let stair = |step: u32| {
+        let south = 11.5 + f64::from(step);
+        [[19.0, 19.25 + 0.25 * f64::from(step)], [south, south + 1.0]]
+    };
+    let mut unknown: Vec<Rectangle> = (0..7).map(stair).chain([behind]).collect();
+    if !is_wall_seen {
+        unknown.push([[21.0, 22.0], [11.0, 20.0]]);
+    }
+    let scan = Scan::each_degree(-90, 181, |_| 1.0);
+    let robot = Odometry { position: [20.0, 10.0], heading: PI + turn };
+    status(&[way], &unknown, &[], &[Viewpoint::new(&scan, &robot)])
+}
+
+#[test]
+fn one_straight_wall_that_leads_away_beside_free_space_may_be_that_of_an_arm() {
+    assert_eq!(status_of_wedge(true, 1.1), "in doubt");
+    assert_eq!(status_of_wedge(false, 1.1), "unseen", "no wall is seen");
+    assert_eq!(status_of_wedge(true, -0.1), "unseen", "the scanner looked there");
 }

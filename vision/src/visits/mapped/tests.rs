@@ -143,6 +143,21 @@ fn an_arm_in_some_of_the_views_is_possible() {
 }
 
 #[test]
+fn arms_in_doubt_are_possible_beside_one_that_is_in_some_of_the_views() {
+    let fork = place(Point2::origin(), 1.0, &[PI, FRAC_PI_2, 0.0]);
+    let cross = place(Point2::origin(), 1.0, &[PI, FRAC_PI_2, 0.0, -FRAC_PI_2]);
+    let views = eastwards().enumerate().map(|(at, robot)| {
+        let seen = usize::from(at % 3 == 0);
+        (robot, vec![fork.clone(); seen], vec![cross.clone(); 1 - seen])
+    });
+    let visits = visits_by(views);
+    let [visit] = &visits[..] else { panic!("{visits:?}") };
+    let percept = |degree, door| Some(VisitPercept { degree, door: Some(door) });
+    // Clockwise from the west, the north is door 1, and the south is the last one.
+    assert_eq!(visit.alternatives(), [None, percept(3, 1), percept(3, 2), percept(4, 2)]);
+}
+
+#[test]
 fn a_robot_that_leaves_by_an_arm_beside_its_own_has_not_turned_back() {
     let beside = PI - 0.75;
     let went_back = |leaves| {
