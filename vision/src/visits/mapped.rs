@@ -234,7 +234,18 @@ impl<S: Copy + Default> MappedRule<S> {
         if let Some(stay) = &mut self.stay
             && let Some(known) = self.junctions.at(stay.centre)
         {
-            (stay.centre, stay.clearance) = (known.centre, known.clearance);
+            // A few views may show the junction beside where most of them do.
+            let beside = self.junctions.most_seen(now.robot, |place| visit.radius(place.clearance));
+            let is_better = |place: &&TrackedPlace| {
+                place.seen() > 2 * known.seen()
+                    && distance(place.centre, known.centre) < 2.0 * visit.same
+            };
+            let better = beside.filter(is_better);
+            let place = better.unwrap_or(known);
+            (stay.centre, stay.clearance) = (place.centre, place.clearance);
+            if better.is_some() {
+                stay.entry = stay.came.map(|came| direction(stay.centre, came));
+            }
         }
         let is_over = |stay: &mut Stay<S>| {
             let radius = visit.radius(stay.clearance) + visit.leave;
@@ -343,7 +354,7 @@ impl<S: Copy + Default> MappedRule<S> {
             StayKind::PossibleJunction => &self.possible_junctions,
             _ => &self.junctions,
         };
-        let here = places.nearest(robot, |place| visit.radius(place.clearance))?;
+        let here = places.most_seen(robot, |place| visit.radius(place.clearance))?;
         let is_outside = |&&(before, point): &&(f64, Point2<f64>)| {
             before <= way && distance(here.centre, point) > visit.radius(here.clearance)
         };

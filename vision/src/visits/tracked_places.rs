@@ -19,6 +19,9 @@ pub(super) struct TrackedPlace {
     pub clearance: f64,
     /// The directions of its arms in each view, the last one last; empty where it is not seen.
     views: Vec<Vec<f64>>,
+    /// The number of views that its centre is the mean of: odometry drifts, so those before the robot came back do not
+    /// count.
+    of_pass: usize,
     /// Whether a view has shown more than a corner.
     is_meet: bool,
     /// The length of the robot's way at the last view.
@@ -56,16 +59,18 @@ impl TrackedPlaces {
             let SeenPlace { centre, clearance, .. } = *seen;
             let Some(known) = self.index_at(centre) else {
                 let views = vec![arms];
-                self.places.push(TrackedPlace { centre, clearance, views, is_meet, way });
+                let new = TrackedPlace { centre, clearance, views, of_pass: 1, is_meet, way };
+                self.places.push(new);
                 continue;
             };
             let known = &mut self.places[known];
             if is_meet || !known.is_meet {
-                let views = if is_meet == known.is_meet { known.views.len() } else { 0 };
-                let views = views.min(most) as f64;
-                let mean = |old: f64, new: f64| (views * old + new) / (views + 1.0);
+                let is_same = is_meet == known.is_meet && way - known.way <= 2.0 * range;
+                let views = if is_same { known.of_pass.min(most) } else { 0 };
+                let mean = |old: f64, new: f64| (views as f64 * old + new) / (views + 1) as f64;
                 known.centre = known.centre.coords.zip_map(&centre.coords, mean).into();
                 known.clearance = mean(known.clearance, clearance);
+                known.of_pass = views + 1;
                 known.is_meet = is_meet;
             }
             known.views.push(arms);
@@ -93,6 +98,20 @@ impl TrackedPlaces {
             .min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
+    /// The place that most views show of those whose centres are within the distance of a point that a function returns; the
+    /// nearest one of several.
+    pub(super) fn most_seen(
+        &self,
+        point: Point2<f64>,
+        within: impl Fn(&TrackedPlace) -> f64,
+    ) -> Option<&TrackedPlace> {
+        let off = |place: &&TrackedPlace| distance(place.centre, point);
+        let near = self.places.iter().filter(|place| place.seen() > 0);
+        near.filter(|place| off(place) < within(place)).max_by(|one, other| {
+            one.seen().cmp(&other.seen()).then_with(|| off(other).total_cmp(&off(one)))
+        })
+    }
+
     /// The place whose centre is nearest to a point, if the point is within the distance that a function
     /// returns for it.
     pub(super) fn nearest(
@@ -103,7 +122,7 @@ impl TrackedPlaces {
         let off = |place: &&TrackedPlace| distance(place.centre, point);
         self.places
             .iter()
-            .filter(|place| place.views.iter().any(|arms| !arms.is_empty()))
+            .filter(|place| place.seen() > 0)
             .filter(|place| off(place) < within(place))
             .min_by(|one, other| off(one).total_cmp(&off(other)))
     }
@@ -113,6 +132,11 @@ impl TrackedPlace {
     /// What is nearer than this to its centre is the same place, in metres.
     pub(super) fn extent(&self, params: &VisitParams) -> f64 {
         params.same.max(0.6 * self.clearance)
+    }
+
+    /// The number of views that show it.
+    pub(super) fn seen(&self) -> usize {
+        self.views.iter().filter(|arms| !arms.is_empty()).count()
     }
 
     /// Whether enough views show a junction, and no corner.
@@ -217,6 +241,29 @@ mod tests {
         }
         let corners = after(&[&corner, &[seen(1.0, 2.0, &CORNER)]]);
         assert_near(corners.places[0].centre.x, 0.5);
+    }
+
+    #[test]
+    fn a_place_is_where_it_was_seen_since_the_robot_came_back() {
+        let range = VisitParams::DEFAULT.range;
+        for (away, x) in [(2.0 * range, 0.5), (2.0 * range + 0.1, 1.0)] {
+            let mut places = tracked();
+            for (way, x) in [(0.0, 0.0), (away, 1.0)] {
+                places.add([seen(x, 1.0, &FORK)].iter(), Point2::origin(), way);
+            }
+            assert_near(places.places[0].centre.x, x);
+        }
+    }
+
+    #[test]
+    fn of_two_places_around_a_point_the_one_that_most_views_show_is_found() {
+        let [near, far] = [seen(0.5, 1.0, &FORK), seen(-1.2, 1.0, &FORK)];
+        let places = after(&[&[near.clone()], &[far.clone()], &[far.clone()]]);
+        let x = |within| places.most_seen(Point2::origin(), |_| within).map(|place| place.centre.x);
+        assert_eq!([0.4, 1.0, 1.5].map(x), [None, Some(0.5), Some(-1.2)]);
+        let both = after(&[&[near, far]]);
+        let nearest = both.most_seen(Point2::origin(), |_| 1.5).map(|place| place.centre.x);
+        assert_eq!(nearest, Some(0.5), "as many show both");
     }
 
     #[test]
