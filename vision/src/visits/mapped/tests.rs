@@ -161,15 +161,16 @@ fn arms_in_doubt_are_possible_beside_one_that_is_in_some_of_the_views() {
 fn a_junction_that_a_few_views_show_beside_its_place_is_visited_where_most_of_them_do() {
     let arms = [PI, FRAC_PI_2, 0.0, -FRAC_PI_2];
     let [astray, cross] =
-        [[-0.8, -0.9], [0.5, 0.6]].map(|[x, y]| place(Point2::new(x, y), 1.5, &arms));
-    let views = eastwards().map(|robot| {
-        // The robot is within the former when it comes.
+        [[-0.9, -0.9], [0.5, 0.6]].map(|[x, y]| place(Point2::new(x, y), 1.5, &arms));
+    // The robot turns to the right. It comes into the former first, and leaves it last.
+    let way = along(&[[-12.0, 0.0], [0.0, 0.0], [0.0, -12.0]], &[]);
+    let views = way.map(|(robot, ..)| {
         let seen = if (-5.0..-4.0).contains(&robot.x) { &astray } else { &cross };
         (robot, vec![seen.clone()], Vec::new())
     });
     let visits = visits_by(views);
     let [visit] = &visits[..] else { panic!("{visits:?}") };
-    assert_eq!(visit.alternatives(), [Some(VisitPercept { degree: 4, door: Some(2) })]);
+    assert_eq!(visit.alternatives(), [Some(VisitPercept { degree: 4, door: Some(3) })]);
     assert!(distance(visit.centre, Point2::new(0.5, 0.6)) < 1e-9, "{}", visit.centre);
 }
 
