@@ -168,7 +168,9 @@ fn a_junction_that_a_few_views_show_beside_its_place_is_visited_where_most_of_th
         let seen = if (-5.0..-4.0).contains(&robot.x) { &astray } else { &cross };
         (robot, vec![seen.clone()], Vec::new())
     });
-    let visits = visits_by(views);
+    let mut robot = Robot::default();
+    robot.params.visit.views = 40;
+    let visits = robot.visits(views);
     let [visit] = &visits[..] else { panic!("{visits:?}") };
     assert_eq!(visit.alternatives(), [Some(VisitPercept { degree: 4, door: Some(3) })]);
     assert!(distance(visit.centre, Point2::new(0.5, 0.6)) < 1e-9, "{}", visit.centre);
