@@ -142,9 +142,9 @@ impl<S: Copy + Default> MappedRule<S> {
     pub(super) fn new(params: &LaserParams) -> Self {
         Self {
             params: *params,
-            junctions: TrackedPlaces::new(params.visit),
-            possible_junctions: TrackedPlaces::new(params.visit),
-            dead_ends: TrackedPlaces::new(params.visit),
+            junctions: TrackedPlaces::new(params),
+            possible_junctions: TrackedPlaces::new(params),
+            dead_ends: TrackedPlaces::new(params),
             bends: Bends::new(params.corner),
             ..Self::default()
         }

@@ -3,11 +3,17 @@
 use nalgebra::Point2;
 use toposlam_model::driving::scene::wrapped;
 
-use crate::{geometry::distance, laser::params::VisitParams, place::SeenPlace};
+use crate::{
+    geometry::distance,
+    laser::params::{LaserParams, VisitParams},
+    place::SeenPlace,
+};
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct TrackedPlaces {
     params: VisitParams,
+    /// Whether a place may lie elsewhere when the robot comes back: where scans are not matched, odometry drifts.
+    drifts: bool,
     places: Vec<TrackedPlace>,
 }
 
@@ -19,9 +25,9 @@ pub(super) struct TrackedPlace {
     pub clearance: f64,
     /// The directions of its arms in each view, the last one last; empty where it is not seen.
     views: Vec<Vec<f64>>,
-    /// The number of views that its centre is the mean of: odometry drifts, so those before the robot came back do not
-    /// count.
-    of_pass: usize,
+    /// The number of views in which it lies where it is now: odometry drifts, so it may have lain elsewhere before the robot
+    /// came back.
+    here: usize,
     /// Whether a view has shown more than a corner.
     is_meet: bool,
     /// The length of the robot's way at the last view.
@@ -37,8 +43,9 @@ pub(super) struct TrackedArm {
 }
 
 impl TrackedPlaces {
-    pub(super) fn new(params: VisitParams) -> Self {
-        Self { params, places: Vec::new() }
+    pub(super) fn new(params: &LaserParams) -> Self {
+        let drifts = params.matching.rounds == 0;
+        Self { params: params.visit, drifts, places: Vec::new() }
     }
 
     /// Adds a view of the places that the robot is near, after this length of its way.
@@ -59,27 +66,32 @@ impl TrackedPlaces {
             let SeenPlace { centre, clearance, .. } = *seen;
             let Some(known) = self.index_at(centre) else {
                 let views = vec![arms];
-                let new = TrackedPlace { centre, clearance, views, of_pass: 1, is_meet, way };
+                let new = TrackedPlace { centre, clearance, views, here: 1, is_meet, way };
                 self.places.push(new);
                 continue;
             };
             let known = &mut self.places[known];
             if is_meet || !known.is_meet {
-                let is_same = is_meet == known.is_meet && way - known.way <= 2.0 * range;
-                let views = if is_same { known.of_pass.min(most) } else { 0 };
-                let mean = |old: f64, new: f64| (views as f64 * old + new) / (views + 1) as f64;
+                let came_back = self.drifts && way - known.way > 2.0 * range;
+                let has_moved =
+                    came_back && distance(known.centre, centre) > self.params.same / 2.0;
+                let is_same = is_meet == known.is_meet && !has_moved;
+                known.here = if is_same { known.here.min(most) } else { 0 };
+                let views = known.here as f64;
+                let mean = |old: f64, new: f64| (views * old + new) / (views + 1.0);
                 known.centre = known.centre.coords.zip_map(&centre.coords, mean).into();
                 known.clearance = mean(known.clearance, clearance);
-                known.of_pass = views + 1;
                 known.is_meet = is_meet;
             }
             known.views.push(arms);
+            known.here += 1;
             known.way = way;
         }
         for known in &mut self.places {
             let near = distance(known.centre, robot) < range + known.clearance;
             if near && known.way < way {
                 known.views.push(Vec::new());
+                known.here += 1;
             }
             let old = known.views.len().saturating_sub(most);
             known.views.drain(..old);
@@ -203,7 +215,8 @@ mod tests {
 
     /// The last three views decide.
     fn tracked() -> TrackedPlaces {
-        TrackedPlaces::new(VisitParams { views: 3, ..VisitParams::DEFAULT })
+        let visit = VisitParams { views: 3, ..VisitParams::DEFAULT };
+        TrackedPlaces::new(&LaserParams { visit, ..LaserParams::DEFAULT })
     }
 
     /// The places after views of a robot at the origin, one in each metre of its way.
@@ -246,9 +259,10 @@ mod tests {
     #[test]
     fn a_place_is_where_it_was_seen_since_the_robot_came_back() {
         let range = VisitParams::DEFAULT.range;
-        for (away, x) in [(2.0 * range, 0.5), (2.0 * range + 0.1, 1.0)] {
+        let far = 2.0 * range + 0.1;
+        for (away, there, x) in [(far - 0.2, 1.0, 0.5), (far, 1.0, 1.0), (far, 0.7, 0.35)] {
             let mut places = tracked();
-            for (way, x) in [(0.0, 0.0), (away, 1.0)] {
+            for (way, x) in [(0.0, 0.0), (away, there)] {
                 places.add([seen(x, 1.0, &FORK)].iter(), Point2::origin(), way);
             }
             assert_near(places.places[0].centre.x, x);
@@ -356,7 +370,7 @@ mod tests {
         // Two of three views.
         assert!(shows(&[&fork, &fork, &corner]) && !shows(&[&fork, &corner, &corner]));
         // Two of four are too few.
-        let mut usual = TrackedPlaces::new(VisitParams::DEFAULT);
+        let mut usual = TrackedPlaces::new(&LaserParams::DEFAULT);
         for (way, view) in [&fork, &fork, &corner, &corner].into_iter().enumerate() {
             usual.add(view.iter(), Point2::origin(), way as f64);
         }
