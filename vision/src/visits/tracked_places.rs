@@ -25,9 +25,8 @@ pub(super) struct TrackedPlace {
     pub clearance: f64,
     /// The directions of its arms in each view, the last one last; empty where it is not seen.
     views: Vec<Vec<f64>>,
-    /// The number of views in which it lies where it is now: odometry drifts, so it may have lain elsewhere before the robot
-    /// came back.
-    here: usize,
+    /// The number of views before it lay where it is now: odometry drifts, so it may lie elsewhere when the robot comes back.
+    elsewhere: usize,
     /// Whether a view has shown more than a corner.
     is_meet: bool,
     /// The length of the robot's way at the last view.
@@ -66,7 +65,7 @@ impl TrackedPlaces {
             let SeenPlace { centre, clearance, .. } = *seen;
             let Some(known) = self.index_at(centre) else {
                 let views = vec![arms];
-                let new = TrackedPlace { centre, clearance, views, here: 1, is_meet, way };
+                let new = TrackedPlace { centre, clearance, views, elsewhere: 0, is_meet, way };
                 self.places.push(new);
                 continue;
             };
@@ -75,26 +74,27 @@ impl TrackedPlaces {
                 let came_back = self.drifts && way - known.way > 2.0 * range;
                 let has_moved =
                     came_back && distance(known.centre, centre) > self.params.same / 2.0;
-                let is_same = is_meet == known.is_meet && !has_moved;
-                known.here = if is_same { known.here.min(most) } else { 0 };
-                let views = known.here as f64;
+                if has_moved {
+                    known.elsewhere = known.views.len();
+                }
+                let views = known.views.len() - known.elsewhere;
+                let views = if is_meet == known.is_meet { views as f64 } else { 0.0 };
                 let mean = |old: f64, new: f64| (views * old + new) / (views + 1.0);
                 known.centre = known.centre.coords.zip_map(&centre.coords, mean).into();
                 known.clearance = mean(known.clearance, clearance);
                 known.is_meet = is_meet;
             }
             known.views.push(arms);
-            known.here += 1;
             known.way = way;
         }
         for known in &mut self.places {
             let near = distance(known.centre, robot) < range + known.clearance;
             if near && known.way < way {
                 known.views.push(Vec::new());
-                known.here += 1;
             }
             let old = known.views.len().saturating_sub(most);
             known.views.drain(..old);
+            known.elsewhere = known.elsewhere.saturating_sub(old);
         }
     }
 
