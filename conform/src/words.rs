@@ -516,6 +516,7 @@ fn drift(drift: f64) -> String {
 fn without_odometry(MatchedScans { unmatched, .. }: MatchedScans) -> String {
     let skipped = match unmatched {
         0 => String::new(),
+        1 => "; 1 scan that matches nothing is skipped".to_owned(),
         _ => format!("; {} that match nothing are skipped", counted(unmatched as usize, "scan")),
     };
     format!(

@@ -123,21 +123,13 @@ fn messages_off_the_clock_are_skipped_and_counted() {
     has(&late, &json!({ "skipped_messages.off_clock": 0 }), "late odometry");
     assert!(has_remark(&late, &remark), "{late}");
     // Without odometry scans are placed by the walls of earlier ones, while these are not too far apart.
-    let without_odometry = |each: u64| {
-        let mut number = 0;
-        rewritten(&log, &changed, |_, message| {
-            number += u64::from(message.channel.topic == "/scan");
-            let is_kept = message.log_time < 1000 * 1_000_000_000 && number % each == 0;
-            is_kept && !is_odometry(message) && message.channel.topic != "/tf"
-        });
-    };
-    without_odometry(1);
+    rewritten(&log, &changed, |_, message| {
+        let is_kept = message.log_time < 1000 * 1_000_000_000;
+        is_kept && !is_odometry(message) && message.channel.topic != "/tf"
+    });
     let by_scans = conform(&scratch, "changed.mcap");
     has(&by_scans, &json!({ "verdict": "not-known", "evidence": "laser" }), "no odometry");
     assert!(by_scans["matched_scans"]["placed"].as_u64() > Some(100), "{by_scans}");
-    without_odometry(10);
-    let message = scratch.error(&format!("conform changed.mcap {LASER}"));
-    assert!(message.contains("its scans do not match the walls of earlier ones"), "{message}");
     let message = scratch.error("conform changed.mcap --events images");
     assert!(message.contains("this needs image and odometry, and"), "{message}");
 }

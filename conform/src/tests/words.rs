@@ -292,6 +292,7 @@ fn the_scanner_the_odometry_and_the_marker_of_a_laser_log_are_facts() {
     };
     let placed = "not recorded: scans are placed by the walls of earlier ones, and lengths along corridors are not certain";
     assert_eq!(unmatched(0), placed);
+    assert_eq!(unmatched(1), format!("{placed}; 1 scan that matches nothing is skipped"));
     assert_eq!(unmatched(2), format!("{placed}; 2 scans that match nothing are skipped"));
     let marker = |added| remarks_of("marker", &|facts| facts.added_marker = Some(added)).unwrap();
     let assumed = |heading| AddedMarker::Assumed { position: [1.0, -2.0], heading, seen: 3 };
