@@ -271,11 +271,11 @@ mod tests {
 
     #[test]
     fn of_two_places_around_a_point_the_one_that_most_views_show_is_found() {
-        let [near, far] = [seen(0.5, 1.0, &FORK), seen(-1.2, 1.0, &FORK)];
-        let places = after(&[&[near.clone()], &[far.clone()], &[far.clone()]]);
+        let [near, far] = [[seen(0.5, 1.0, &FORK)], [seen(-1.2, 1.0, &FORK)]];
+        let places = after(&[&near, &far, &far]);
         let x = |within| places.most_seen(Point2::origin(), |_| within).map(|place| place.centre.x);
         assert_eq!([0.4, 1.0, 1.5].map(x), [None, Some(0.5), Some(-1.2)]);
-        let both = after(&[&[near, far]]);
+        let both = after(&[&[near, far].concat()]);
         let nearest = both.most_seen(Point2::origin(), |_| 1.5).map(|place| place.centre.x);
         assert_eq!(nearest, Some(0.5), "as many show both");
     }
