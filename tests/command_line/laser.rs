@@ -123,13 +123,31 @@ fn messages_off_the_clock_are_skipped_and_counted() {
     has(&late, &json!({ "skipped_messages.off_clock": 0 }), "late odometry");
     assert!(has_remark(&late, &remark), "{late}");
     // Without odometry scans are placed by the walls of earlier ones, while these are not too far apart.
-    rewritten(&log, &changed, |_, message| {
-        let is_kept = message.log_time < 1000 * 1_000_000_000;
-        is_kept && !is_odometry(message) && message.channel.topic != "/tf"
-    });
+    let without_odometry = |covered_from: u64| {
+        let mut number = 0;
+        rewritten(&log, &changed, |_, message| {
+            if message.channel.topic == "/scan" {
+                number += 1;
+                if number > covered_from {
+                    // All readings stand before the number of intensities, which is 0. A scanner that is covered has no
+                    // returns.
+                    let (end, nothing) = (message.data.len() - 4, f32::INFINITY.to_le_bytes());
+                    for range in message.data.to_mut()[end - 4 * 360..end].chunks_exact_mut(4) {
+                        range.copy_from_slice(&nothing);
+                    }
+                }
+            }
+            let is_kept = message.log_time < 1000 * 1_000_000_000;
+            is_kept && !is_odometry(message) && message.channel.topic != "/tf"
+        });
+    };
+    without_odometry(u64::MAX);
     let by_scans = conform(&scratch, "changed.mcap");
     has(&by_scans, &json!({ "verdict": "not-known", "evidence": "laser" }), "no odometry");
     assert!(by_scans["matched_scans"]["placed"].as_u64() > Some(100), "{by_scans}");
+    without_odometry(100);
+    let message = scratch.error(&format!("conform changed.mcap {LASER}"));
+    assert!(message.contains("its scans do not match the walls of earlier ones"), "{message}");
     let message = scratch.error("conform changed.mcap --events images");
     assert!(message.contains("this needs image and odometry, and"), "{message}");
 }
