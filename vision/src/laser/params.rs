@@ -162,11 +162,11 @@ params! {
         /// ... is this many times as wide as the arm, because the edge of the field of view cuts the arm obliquely, ...
         /// Simulated buildings.
         unseen_gap: f64 = 1.3,
-        /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower. ...
+        /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower.
         unseen_width: f64 = 1.5,
-        /// ... Or if free space is seen for [`Self::min_possible`] behind the walls of the junction, with a straight wall on one
-        /// side along this part of it, and no wall ahead. Simulated buildings: a scanner that looks ahead sees one wall of a
-        /// corridor.
+        /// If the scanner did not look at its end, it is also a possible arm if one sees [`Self::min_possible`] into it, with a
+        /// straight wall on one side along this part of what one sees, and no wall ahead. Simulated buildings: a scanner that
+        /// looks ahead sees only one wall of a corridor beside it.
         one_wall: f64 = 0.4,
         /// An arm narrower than [`Self::min_width`] whose gap is this many times as wide is a room behind a door. Logs.
         room_gap: f64 = 3.5,

@@ -110,33 +110,39 @@ impl TrackedPlaces {
             .min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
-    /// The place that most views show of those whose centres are within the distance of a point that a function returns; the
-    /// nearest one of several.
+    /// The places that are seen and whose centres are within the distance of a point that a function returns, each with its
+    /// distance.
+    fn around(
+        &self,
+        point: Point2<f64>,
+        within: impl Fn(&TrackedPlace) -> f64,
+    ) -> impl Iterator<Item = (f64, &TrackedPlace)> {
+        let places = self.places.iter().filter(|place| place.seen() > 0);
+        let places = places.map(move |place| (distance(place.centre, point), place));
+        places.filter(move |&(off, place)| off < within(place))
+    }
+
+    /// The one of these places that most views show; the nearest of several.
     pub(super) fn most_seen(
         &self,
         point: Point2<f64>,
         within: impl Fn(&TrackedPlace) -> f64,
     ) -> Option<&TrackedPlace> {
-        let off = |place: &&TrackedPlace| distance(place.centre, point);
-        let near = self.places.iter().filter(|place| place.seen() > 0);
-        near.filter(|place| off(place) < within(place)).max_by(|one, other| {
-            one.seen().cmp(&other.seen()).then_with(|| off(other).total_cmp(&off(one)))
-        })
+        let around = self.around(point, within);
+        let most = around.max_by(|one, other| {
+            one.1.seen().cmp(&other.1.seen()).then_with(|| other.0.total_cmp(&one.0))
+        });
+        most.map(|(_, place)| place)
     }
 
-    /// The place whose centre is nearest to a point, if the point is within the distance that a function
-    /// returns for it.
+    /// The nearest one of these places.
     pub(super) fn nearest(
         &self,
         point: Point2<f64>,
         within: impl Fn(&TrackedPlace) -> f64,
     ) -> Option<&TrackedPlace> {
-        let off = |place: &&TrackedPlace| distance(place.centre, point);
-        self.places
-            .iter()
-            .filter(|place| place.seen() > 0)
-            .filter(|place| off(place) < within(place))
-            .min_by(|one, other| off(one).total_cmp(&off(other)))
+        let around = self.around(point, within);
+        around.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, place)| place)
     }
 }
 

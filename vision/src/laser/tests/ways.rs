@@ -293,6 +293,7 @@ fn one_sees_along_a_corridor_as_far_as_it_goes_between_its_walls() {
         // Farther than the end, one sees the wall there from one side of the corridor to the other.
         let facing = if is_far { 0.0..0.1 } else { 1.5..2.1 };
         assert!(facing.contains(&view.facing_wall), "{far}: {view:?}");
+        assert!((view.length - far.min(15.0)).abs() < 0.2, "{far}: {view:?}");
     }
 }
 
@@ -311,6 +312,7 @@ fn a_wall_that_is_missing_on_one_side_is_not_beside_the_arm() {
     let glass = [[[5.0, 30.0], [11.0, 11.5]], [[5.0, 30.0], [8.5, 9.0]]];
     let view = arm_view(&map(&[[[5.0, 30.0], [9.0, 11.0]]], &[&[WEST][..], &glass].concat()), 9.5);
     assert_eq!((view.is_far, view.facing_wall, view.walled), (true, 0.0, [0.0; 2]));
+    assert!((9.5..9.7).contains(&view.length), "{view:?}");
 }
 
 #[test]
@@ -349,6 +351,7 @@ fn one_looks_along_an_arm_from_behind_the_walls_of_its_junction() {
         (0..200).map(|at| (Point2::new(10.0 + 0.1 * f64::from(at), 10.0), 1.0)).collect();
     let view = ArmView::new(&line, (line[0].0, 2.0), &map, 9.5);
     assert_eq!((view.is_far, view.facing_wall, view.walled), (true, 0.0, [1.0; 2]));
+    assert!((9.5..9.7).contains(&view.length), "{view:?}");
 }
 
 #[test]
@@ -593,20 +596,22 @@ fn a_short_way_may_be_an_arm_if_the_scanner_did_not_look_at_its_end() {
     assert_eq!(status_of_unseen(2.75, 5.0, 1.1), "unseen", "a hall");
 }
 
-/// [`status`] of a way to the north, 2 m wide and 8 m behind the corridor, of which nothing is known but what lies on one side
-/// of a slanted line from its west corner to its east wall; and of the wall, if it is seen. The scanner is that of
-/// [`status_of_unseen`].
-fn status_of_wedge(is_wall_seen: bool, turn: f64) -> &'static str {
-    let (way, behind) = north(2.0, 8.0);
-    // 0.25 m of the way are unseen from 11.5 m north on, and each metre 0.25 m more.
-    let stair = |step: u32| {
-        let south = 11.5 + f64::from(step);
-        [[19.0, 19.25 + 0.25 * f64::from(step)], [south, south + 1.0]]
-    };
-    let mut unknown: Vec<Rectangle> = (0..7).map(stair).chain([behind]).collect();
-    if !is_wall_seen {
-        unknown.push([[21.0, 22.0], [11.0, 20.0]]);
-    }
+/// What is unseen of a way to the north that is 2 m wide: 0.25 m of it from so far north on, beside its west wall, and 0.25 m
+/// more after each rise.
+fn unseen_side(south: f64, rise: f64) -> impl Iterator<Item = Rectangle> {
+    (0..7).map(f64::from).map(move |step| {
+        [[19.0, 19.25 + 0.25 * step], [south + rise * step, south + rise * (step + 1.0)]]
+    })
+}
+
+/// [`status`] of this way with these unknown areas. The scanner is that of [`status_of_unseen`].
+fn status_of_wedge(
+    length: f64,
+    unseen: impl Iterator<Item = Rectangle>,
+    turn: f64,
+) -> &'static str {
+    let (way, behind) = north(2.0, length);
+    let unknown: Vec<Rectangle> = unseen.chain([behind]).collect();
     let scan = Scan::each_degree(-90, 181, |_| 1.0);
     let robot = Odometry { position: [20.0, 10.0], heading: PI + turn };
     status(&[way], &unknown, &[], &[Viewpoint::new(&scan, &robot)])
@@ -614,7 +619,16 @@ fn status_of_wedge(is_wall_seen: bool, turn: f64) -> &'static str {
 
 #[test]
 fn one_straight_wall_that_leads_away_beside_free_space_may_be_that_of_an_arm() {
-    assert_eq!(status_of_wedge(true, 1.1), "in doubt");
-    assert_eq!(status_of_wedge(false, 1.1), "unseen", "no wall is seen");
-    assert_eq!(status_of_wedge(true, -0.1), "unseen", "the scanner looked there");
+    let unseen = || unseen_side(11.5, 1.0);
+    assert_eq!(status_of_wedge(8.0, unseen(), 1.1), "in doubt");
+    let wall = [[21.0, 22.0], [11.0, 20.0]];
+    assert_eq!(status_of_wedge(8.0, unseen().chain([wall]), 1.1), "unseen", "no wall is seen");
+    assert_eq!(status_of_wedge(8.0, unseen(), -0.1), "unseen", "the scanner looked there");
+}
+
+#[test]
+fn a_way_reaches_as_far_behind_its_junction_as_what_is_seen_of_one_side() {
+    // Its middle line ends 1.5 m from the junction, and 1.7 m are needed.
+    assert_eq!(status_of_wedge(1.375, unseen_side(10.625, 0.25), 1.1), "in doubt");
+    assert_eq!(status_of_wedge(0.7, unseen_side(10.625, 0.15), 1.1), "unseen");
 }
