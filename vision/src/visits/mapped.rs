@@ -22,6 +22,9 @@ use crate::{
 /// How far one sees on the map of the last view, from a point in a direction and up to a limit, in metres.
 type Sight<'a> = dyn Fn(Point2<f64>, f64, f64) -> f64 + 'a;
 
+/// A place that so many views in turn do not show is no longer where it was.
+const LATELY: usize = 3;
+
 #[derive(Clone, Debug, Default)]
 pub(super) struct MappedRule<S> {
     params: LaserParams,
@@ -234,13 +237,15 @@ impl<S: Copy + Default> MappedRule<S> {
         if let Some(stay) = &mut self.stay
             && let Some(known) = self.junctions.at(stay.centre)
         {
-            // A few views may show the junction beside where most of them do.
-            let beside = self.junctions.most_seen(now.robot, |place| visit.radius(place.clearance));
-            let is_better = |place: &&TrackedPlace| {
-                place.seen() > 2 * known.seen()
-                    && distance(place.centre, known.centre) < 2.0 * visit.same
+            // Earlier views may have shown the junction beside where the last ones do.
+            let is_gone = known.shown_by_last(LATELY) == Some(false);
+            let within = |place: &TrackedPlace| {
+                let is_there = is_gone
+                    && place.shown_by_last(LATELY) == Some(true)
+                    && distance(place.centre, known.centre) < 2.0 * visit.same;
+                if is_there { visit.radius(place.clearance) } else { 0.0 }
             };
-            let better = beside.filter(is_better);
+            let better = self.junctions.nearest(now.robot, within);
             let place = better.unwrap_or(known);
             (stay.centre, stay.clearance) = (place.centre, place.clearance);
             if better.is_some() {
@@ -354,7 +359,7 @@ impl<S: Copy + Default> MappedRule<S> {
             StayKind::PossibleJunction => &self.possible_junctions,
             _ => &self.junctions,
         };
-        let here = places.most_seen(robot, |place| visit.radius(place.clearance))?;
+        let here = places.nearest(robot, |place| visit.radius(place.clearance))?;
         let is_outside = |&&(before, point): &&(f64, Point2<f64>)| {
             before <= way && distance(here.centre, point) > visit.radius(here.clearance)
         };

@@ -110,39 +110,19 @@ impl TrackedPlaces {
             .min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
-    /// The places that are seen and whose centres are within the distance of a point that a function returns, each with its
-    /// distance.
-    fn around(
-        &self,
-        point: Point2<f64>,
-        within: impl Fn(&TrackedPlace) -> f64,
-    ) -> impl Iterator<Item = (f64, &TrackedPlace)> {
-        let places = self.places.iter().filter(|place| place.seen() > 0);
-        let places = places.map(move |place| (distance(place.centre, point), place));
-        places.filter(move |&(off, place)| off < within(place))
-    }
-
-    /// The one of these places that most views show; the nearest of several.
-    pub(super) fn most_seen(
-        &self,
-        point: Point2<f64>,
-        within: impl Fn(&TrackedPlace) -> f64,
-    ) -> Option<&TrackedPlace> {
-        let around = self.around(point, within);
-        let most = around.max_by(|one, other| {
-            one.1.seen().cmp(&other.1.seen()).then_with(|| other.0.total_cmp(&one.0))
-        });
-        most.map(|(_, place)| place)
-    }
-
-    /// The nearest one of these places.
+    /// The place whose centre is nearest to a point, if the point is within the distance that a function
+    /// returns for it.
     pub(super) fn nearest(
         &self,
         point: Point2<f64>,
         within: impl Fn(&TrackedPlace) -> f64,
     ) -> Option<&TrackedPlace> {
-        let around = self.around(point, within);
-        around.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, place)| place)
+        let off = |place: &&TrackedPlace| distance(place.centre, point);
+        self.places
+            .iter()
+            .filter(|place| place.views.iter().any(|arms| !arms.is_empty()))
+            .filter(|place| off(place) < within(place))
+            .min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 }
 
@@ -152,9 +132,11 @@ impl TrackedPlace {
         params.same.max(0.6 * self.clearance)
     }
 
-    /// The number of views that show it.
-    pub(super) fn seen(&self) -> usize {
-        self.views.iter().filter(|arms| !arms.is_empty()).count()
+    /// Whether the last views show it, so many in turn; `None` if some do, or if there are fewer.
+    pub(super) fn shown_by_last(&self, count: usize) -> Option<bool> {
+        let last = self.views.len().checked_sub(count).map(|first| &self.views[first..])?;
+        let shown = last.iter().filter(|arms| !arms.is_empty()).count();
+        (shown == 0 || shown == count).then_some(shown > 0)
     }
 
     /// Whether enough views show a junction, and no corner.
@@ -276,14 +258,15 @@ mod tests {
     }
 
     #[test]
-    fn of_two_places_around_a_point_the_one_that_most_views_show_is_found() {
-        let [near, far] = [[seen(0.5, 1.0, &FORK)], [seen(-1.2, 1.0, &FORK)]];
-        let places = after(&[&near, &far, &far]);
-        let x = |within| places.most_seen(Point2::origin(), |_| within).map(|place| place.centre.x);
-        assert_eq!([0.4, 1.0, 1.5].map(x), [None, Some(0.5), Some(-1.2)]);
-        let both = after(&[&[near, far].concat()]);
-        let nearest = both.most_seen(Point2::origin(), |_| 1.5).map(|place| place.centre.x);
-        assert_eq!(nearest, Some(0.5), "as many show both");
+    fn a_place_is_shown_lately_if_each_of_the_last_views_shows_it_and_gone_if_none_does() {
+        let fork = [seen(0.0, 1.0, &FORK)];
+        let shown = |views: &[&[SeenPlace]], count| after(views).places[0].shown_by_last(count);
+        assert_eq!(
+            [1, 2, 3].map(|count| shown(&[&fork, &fork], count)),
+            [Some(true), Some(true), None]
+        );
+        let gone: [&[SeenPlace]; 3] = [&fork, &[], &[]];
+        assert_eq!([1, 2, 3].map(|count| shown(&gone, count)), [Some(false), Some(false), None]);
     }
 
     #[test]

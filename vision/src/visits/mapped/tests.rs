@@ -158,7 +158,7 @@ fn arms_in_doubt_are_possible_beside_one_that_is_in_some_of_the_views() {
 }
 
 #[test]
-fn a_junction_that_a_few_views_show_beside_its_place_is_visited_where_most_of_them_do() {
+fn a_junction_that_earlier_views_show_beside_its_place_is_visited_where_the_last_ones_do() {
     let arms = [PI, FRAC_PI_2, 0.0, -FRAC_PI_2];
     let [astray, cross] =
         [[-0.9, -0.9], [0.5, 0.6]].map(|[x, y]| place(Point2::new(x, y), 1.5, &arms));
