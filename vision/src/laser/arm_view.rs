@@ -29,12 +29,20 @@ const FAR: f64 = 10.0;
 const BESIDE: f64 = 3.0;
 /// ... and at points this far apart. Geometry: two cells.
 const APART: f64 = 0.3;
-/// A wall is straight where it is this near to its usual distance from the line. Logs.
+/// A wall is straight where it is this near to its usual distance from the line, or from the meet point that it faces. Logs.
 const STRAIGHT: f64 = 0.25;
 
 /// Lines of sight end in one facing wall if the depths of their ends differ by less than this. Geometry: as much as those of a
 /// wall as wide as a corridor that stands 16 degrees askew.
 const THICK: f64 = 0.6;
+
+/// Walls behind a mouth are looked for up to this far. Geometry: niches are less deep.
+const BEHIND: f64 = 5.0;
+/// A wall may face a meet point in these directions from that to the mouth, in radians. Geometry: what is seen of a niche
+/// from the side lies askew.
+const TURNS: [f64; 5] = [-0.52, -0.26, 0.0, 0.26, 0.52];
+/// It is seen up to this far to each side, for each metre ahead. Geometry: 22 degrees.
+const ASKEW: f64 = 0.4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ArmView {
@@ -102,6 +110,37 @@ impl ArmView {
     }
 }
 
+/// The width of the widest wall that faces a meet point within 30 degrees of a direction, at least so far away, in metres: that
+/// of a niche. The walls of an arm lead to the meet point, and do not face it.
+pub(super) fn wall_behind(meet: Point2<f64>, towards: f64, least: f64, map: &Clearances) -> f64 {
+    let hit = |number: i32| {
+        let angle = towards + STEP * f64::from(number);
+        let (range, cell) = map.sight(meet, angle, BEHIND);
+        (cell == Cell::Occupied).then_some((angle, range))
+    };
+    let hits: Vec<(f64, f64)> = (-3 * FAN..=3 * FAN).filter_map(hit).collect();
+    let width = |turn: f64| {
+        let seen = hits.iter().map(|&(angle, range)| {
+            let off = angle - towards - turn;
+            [range * off.cos(), range * off.sin()]
+        });
+        let ahead = seen.filter(|[depth, aside]| *depth > least && aside.abs() < ASKEW * depth);
+        let ahead: Vec<[f64; 2]> = ahead.collect();
+        let usual = median(ahead.iter().map(|&[depth, _]| depth)).unwrap_or_default();
+        let on_wall = ahead.iter().filter(|[depth, _]| (depth - usual).abs() < STRAIGHT);
+        extent(on_wall.map(|&[_, aside]| aside))
+    };
+    TURNS.map(width).into_iter().fold(0.0, f64::max)
+}
+
+/// From the least of some numbers to the greatest.
+fn extent(numbers: impl Iterator<Item = f64>) -> f64 {
+    let (least, greatest) = numbers.fold((f64::MAX, f64::MIN), |(least, greatest), number| {
+        (least.min(number), greatest.max(number))
+    });
+    (greatest - least).max(0.0)
+}
+
 /// The width of the wall in which lines of sight end, in metres, by how far ahead and how far to the left each one ends, and in
 /// which cell; 0 if one of them ends farther ahead where nothing was seen.
 fn facing_wall(ends: &[(f64, f64, Cell)]) -> f64 {
@@ -113,9 +152,7 @@ fn facing_wall(ends: &[(f64, f64, Cell)]) -> f64 {
         return 0.0;
     }
     let on_wall = ends.iter().filter(|end| end.2 == Cell::Occupied && end.0 > wall - THICK);
-    let (right, left) = on_wall
-        .fold((f64::MAX, f64::MIN), |(right, left), end| (right.min(end.1), left.max(end.1)));
-    (left - right).max(0.0)
+    extent(on_wall.map(|end| end.1))
 }
 
 impl Ray {

@@ -159,9 +159,11 @@ params! {
         /// A shorter one is a possible arm if the scanner did not look at its end: with an unobstructed view, the gap there
         /// lay this far beyond the field of view, ... Logs and simulated buildings.
         unseen_turn: f64 = 0.3,
-        /// ... is this many times as wide as the arm, because the edge of the field of view cuts the arm obliquely, ...
-        /// Simulated buildings.
+        /// ... is this many times as wide as the arm, because the edge of the field of view cuts the arm obliquely, or as
+        /// wide as the arm, because it cuts its mouth, ... Simulated buildings.
         unseen_gap: f64 = 1.3,
+        /// ... and no wall of this width faces the junction behind it, ... Logs: niches.
+        niche_wall: f64 = 1.2,
         /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower.
         unseen_width: f64 = 1.5,
         /// If the scanner did not look at its end, it is also a possible arm if one sees [`Self::min_possible`] into it, with a

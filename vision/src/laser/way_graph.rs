@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use nalgebra::Point2;
 
 use super::{
-    arm_view::ArmView,
+    arm_view::{ArmView, wall_behind},
     clearances::Clearances,
     ends::{End, WayEnd},
     grid::Grid,
@@ -14,7 +14,10 @@ use super::{
     skeleton::Skeleton,
     viewpoint::Viewpoint,
 };
-use crate::{geometry::distance, least_squares::median};
+use crate::{
+    geometry::{direction, distance},
+    least_squares::median,
+};
 
 /// A meet point, or the end of a way. Lengths are in metres on the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -311,9 +314,16 @@ impl WayGraph {
             && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
         // The door of a room is narrower, and behind it one sees more than its width.
         let is_door = width < params.min_width && end.gap > params.room_gap * width;
+        // The edge of the field of view cuts the arm, or its mouth, if what is seen there is no niche.
+        let is_mouth = || {
+            let towards = direction(meet.point, leaf.point);
+            let behind = meet.clearance + params.min_behind;
+            end.gap >= width.max(params.min_width)
+                && wall_behind(meet.point, towards, behind, map) < params.niche_wall
+        };
         let may_be_cut = !is_door
             && 2.0 * leaf.clearance >= params.unseen_width
-            && end.gap >= params.unseen_gap * width;
+            && (end.gap >= params.unseen_gap * width || is_mouth());
         // One wall of a corridor, which leads away beside free space.
         let has_one_wall = !faces_wall
             && more >= params.one_wall

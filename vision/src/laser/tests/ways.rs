@@ -589,7 +589,8 @@ fn status_of_unseen(width: f64, opening: f64, turn: f64) -> &'static str {
 fn a_short_way_may_be_an_arm_if_the_scanner_did_not_look_at_its_end() {
     assert_eq!(status_of_unseen(2.0, 3.25, 1.1), "in doubt");
     assert_eq!(status_of_unseen(2.0, 3.25, -0.1), "unseen", "it looked nearly there");
-    assert_eq!(status_of_unseen(2.0, 2.0, 1.1), "unseen", "the gap is as wide as the way");
+    assert_eq!(status_of_unseen(2.0, 2.0, 1.1), "in doubt", "the gap is as wide as the way");
+    assert_eq!(status_of_unseen(2.0, 1.625, 1.1), "unseen", "the gap is narrower");
     // The doors of rooms are narrower, and one sees more than their width behind them.
     assert_eq!(status_of_unseen(1.375, 3.0, 1.1), "in doubt");
     assert_eq!(status_of_unseen(1.375, 7.0, 1.1), "unseen", "a room");
@@ -624,6 +625,29 @@ fn one_straight_wall_that_leads_away_beside_free_space_may_be_that_of_an_arm() {
     let wall = [[21.0, 22.0], [11.0, 20.0]];
     assert_eq!(status_of_wedge(8.0, unseen().chain([wall]), 1.1), "unseen", "no wall is seen");
     assert_eq!(status_of_wedge(8.0, unseen(), -0.1), "unseen", "the scanner looked there");
+}
+
+/// [`status`] of a way to the north, 2 m wide, of which the edge of the field of view shows this width 2 m behind the corridor,
+/// where it ends at a wall or goes on. The scanner is that of [`status_of_unseen`].
+fn status_of_mouth(seen: f64, goes_on: bool) -> &'static str {
+    let (way, behind) = north(2.0, 2.0);
+    let rows = (0..16).map(|row| CELL * f64::from(row));
+    let unseen = rows.map(|row| {
+        let edge = 19.0 + (2.0 - seen) * (row + CELL) / 2.0;
+        [[19.0, edge], [11.0 + row, 11.0 + row + CELL]]
+    });
+    let unknown: Vec<Rectangle> = unseen.chain(goes_on.then_some(behind)).collect();
+    let scan = Scan::each_degree(-90, 181, |_| 1.0);
+    let robot = Odometry { position: [20.0, 10.0], heading: PI + 1.1 };
+    status(&[way], &unknown, &[], &[Viewpoint::new(&scan, &robot)])
+}
+
+#[test]
+fn a_niche_of_which_a_side_is_unseen_is_no_arm() {
+    for seen in [1.25, 1.5, 1.75] {
+        assert_eq!(status_of_mouth(seen, false), "unseen", "{seen} m");
+        assert_eq!(status_of_mouth(seen, true), "in doubt", "{seen} m");
+    }
 }
 
 #[test]
