@@ -193,7 +193,7 @@ impl RayCounts {
         let shift = (motion.translation.vector - self.origin.coords) * scale;
         move |point| {
             let place = turn * point.coords + shift;
-            [place.x as i64, place.y as i64]
+            [place.x, place.y].map(|at| at.clamp(-FARTHEST, FARTHEST) as i64)
         }
     }
 }
@@ -231,8 +231,8 @@ type Place = [i64; 2];
 const PARTS: f64 = 4_294_967_296.0;
 /// The logarithm of their number.
 const PART_BITS: u32 = 32;
-/// A line that begins farther away reaches no map.
-const FARTHEST: i64 = 1 << 61;
+/// What is farther away is taken to be here, and a line that begins here reaches no map.
+const FARTHEST: f64 = (1_i64 << 61) as f64;
 
 /// The cell at a place.
 fn cell_at(place: Place) -> [i64; 2] {
@@ -243,14 +243,14 @@ fn cell_at(place: Place) -> [i64; 2] {
 /// are at most a cell apart along its main axis, or a half or a quarter of one if that is halved once or twice. The visitor
 /// gets the cell of each sample, and whether it is another one than that of the sample before.
 fn for_cells(side: usize, [from, to]: [Place; 2], halved: u32, mut visit: impl FnMut(usize, bool)) {
-    let off = [0, 1].map(|axis| to[axis].saturating_sub(from[axis]));
-    let main = off[0].saturating_abs().max(off[1].saturating_abs());
+    let off = [0, 1].map(|axis| to[axis] - from[axis]);
+    let main = off[0].abs().max(off[1].abs());
     let sample = 1 << (PART_BITS - halved);
-    let steps = (main.saturating_add(sample - 1) >> (PART_BITS - halved)).max(1);
+    let steps = ((main + sample - 1) >> (PART_BITS - halved)).max(1);
     let step = off.map(|off| off / steps);
     let is_all_on_map = [from, to].iter().all(|place| index_of(side, cell_at(*place)).is_some());
     let (first, last) = if is_all_on_map { (0, steps) } else { on_map(side, from, step, steps) };
-    let [mut x, mut y] = [0, 1].map(|axis| from[axis].saturating_add(first * step[axis]));
+    let [mut x, mut y] = [0, 1].map(|axis| from[axis] + first * step[axis]);
     let mut before = usize::MAX;
     let samples = last + 1 - first;
     for _ in 0..samples {
@@ -265,7 +265,7 @@ fn for_cells(side: usize, [from, to]: [Place; 2], halved: u32, mut visit: impl F
 /// The first and the last step of a line that are on a map; the last one is before the first if none is.
 #[cold]
 fn on_map(side: usize, from: Place, step: Place, steps: i64) -> (i64, i64) {
-    if !from.iter().all(|at| (-FARTHEST..=FARTHEST).contains(at)) {
+    if from.iter().any(|at| at.abs() >= FARTHEST as i64) {
         return (0, -1);
     }
     let border = (side as i64) << PART_BITS;
