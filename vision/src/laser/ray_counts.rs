@@ -74,11 +74,15 @@ impl RayCounts {
         let place = self.place_from(map_from_robot);
         let from = place(rays.from);
         for (ends, is_hit) in [(&rays.hits, true), (&rays.between, false)] {
-            for &end in ends {
+            // All lines before the first is drawn: a processor guesses wrong where a line ends, and then waits for the next.
+            let line = |&end: &Point2<f64>| {
                 let end = place(end);
-                let last = index_of(side, cell_at(end));
+                (Line::new(side, [from, end], 0), index_of(side, cell_at(end)))
+            };
+            let lines: Vec<(Line, Option<usize>)> = ends.iter().map(line).collect();
+            for (line, last) in lines {
                 let before = last.map(|last| self.passes[last]);
-                for_cells(side, [from, end], 0, |at, is_new| {
+                line.for_cells(side, |at, is_new| {
                     self.passes[at] += if is_new { more } else { 0 };
                 });
                 // A ray does not pass the cell in which it ends.
@@ -91,7 +95,7 @@ impl RayCounts {
         for ends in &rays.walls {
             let ends = ends.map(&place);
             let known = ends.map(|end| index_of(side, cell_at(end)));
-            for_cells(side, ends, 1, |at, is_new| {
+            Line::new(side, ends, 1).for_cells(side, |at, is_new| {
                 if is_new && !known.contains(&Some(at)) {
                     self.hits[at] += more;
                 }
@@ -239,26 +243,42 @@ fn cell_at(place: Place) -> [i64; 2] {
     place.map(|at| at >> PART_BITS)
 }
 
-/// Visits the cells of a square map on a line between two places. It is sampled from its begin to its end: successive samples
-/// are at most a cell apart along its main axis, or a half or a quarter of one if that is halved once or twice. The visitor
-/// gets the cell of each sample, and whether it is another one than that of the sample before.
-fn for_cells(side: usize, [from, to]: [Place; 2], halved: u32, mut visit: impl FnMut(usize, bool)) {
-    let off = [0, 1].map(|axis| to[axis] - from[axis]);
-    let main = off[0].abs().max(off[1].abs());
-    let sample = 1 << (PART_BITS - halved);
-    let steps = ((main + sample - 1) >> (PART_BITS - halved)).max(1);
-    let step = off.map(|off| off / steps);
-    let is_all_on_map = [from, to].iter().all(|place| index_of(side, cell_at(*place)).is_some());
-    let (first, last) = if is_all_on_map { (0, steps) } else { on_map(side, from, step, steps) };
-    let [mut x, mut y] = [0, 1].map(|axis| from[axis] + first * step[axis]);
-    let mut before = usize::MAX;
-    let samples = last + 1 - first;
-    for _ in 0..samples {
-        let at = (y >> PART_BITS) as usize * side + (x >> PART_BITS) as usize;
-        // The visitor can do without a branch, which would be hard to predict.
-        visit(at, at != before);
-        before = at;
-        (x, y) = (x + step[0], y + step[1]);
+/// A line between two places, by its samples on a square map.
+struct Line {
+    first: Place,
+    step: Place,
+    samples: i64,
+}
+
+impl Line {
+    /// A line that is sampled from its begin to its end: successive samples are at most a cell apart along its main axis, or a
+    /// half or a quarter of one if that is halved once or twice.
+    fn new(side: usize, [from, to]: [Place; 2], halved: u32) -> Self {
+        let off = [0, 1].map(|axis| to[axis] - from[axis]);
+        let main = off[0].abs().max(off[1].abs());
+        let sample = 1 << (PART_BITS - halved);
+        let steps = ((main + sample - 1) >> (PART_BITS - halved)).max(1);
+        let step = off.map(|off| off / steps);
+        let is_all_on_map =
+            [from, to].iter().all(|place| index_of(side, cell_at(*place)).is_some());
+        let (first, last) =
+            if is_all_on_map { (0, steps) } else { on_map(side, from, step, steps) };
+        let samples = last + 1 - first;
+        Self { first: [0, 1].map(|axis| from[axis] + first * step[axis]), step, samples }
+    }
+
+    /// Visits the cells of its samples. The visitor gets the cell of each sample, and whether it is another one than that of the
+    /// sample before.
+    fn for_cells(self, side: usize, mut visit: impl FnMut(usize, bool)) {
+        let Self { first: [mut x, mut y], step, samples } = self;
+        let mut before = usize::MAX;
+        for _ in 0..samples {
+            let at = (y >> PART_BITS) as usize * side + (x >> PART_BITS) as usize;
+            // The visitor can do without a branch, which would be hard to predict.
+            visit(at, at != before);
+            before = at;
+            (x, y) = (x + step[0], y + step[1]);
+        }
     }
 }
 
@@ -321,7 +341,8 @@ mod tests {
             let ends = ends.map(Vector2::from);
             let mut visited = Vec::new();
             let places = ends.map(|end| [end.x, end.y].map(|at| (at * PARTS) as i64));
-            for_cells(SIDE, places, halved, |at, is_new| if is_new { visited.push(at) });
+            let line = Line::new(SIDE, places, halved);
+            line.for_cells(SIDE, |at, is_new| if is_new { visited.push(at) });
             let off = ends[1] - ends[0];
             let steps = (f64::from(1 << halved) * off.amax()).ceil().max(1.0);
             let samples = (0..=steps as u32).map(|step| ends[0] + f64::from(step) / steps * off);
