@@ -44,6 +44,9 @@ const TURNS: [f64; 5] = [-0.52, -0.26, 0.0, 0.26, 0.52];
 /// It is seen up to this far to each side, for each metre ahead. Geometry: 22 degrees.
 const ASKEW: f64 = 0.4;
 
+/// A narrower gap in a wall behind a mouth is a door. Geometry: less than the width of a corridor.
+const DOOR: f64 = 1.2;
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ArmView {
     /// Whether free space is seen far enough on one straight line.
@@ -114,21 +117,23 @@ impl ArmView {
 /// of a niche. The walls of an arm lead to the meet point, and do not face it.
 pub(super) fn wall_behind(meet: Point2<f64>, towards: f64, least: f64, map: &Clearances) -> f64 {
     let hit = |number: i32| {
-        let angle = towards + STEP * f64::from(number);
-        let (range, cell) = map.sight(meet, angle, BEHIND);
+        let angle = STEP * f64::from(number);
+        let (range, cell) = map.sight(meet, towards + angle, BEHIND);
         (cell == Cell::Occupied).then_some((angle, range))
     };
     let hits: Vec<(f64, f64)> = (-3 * FAN..=3 * FAN).filter_map(hit).collect();
     let width = |turn: f64| {
-        let seen = hits.iter().map(|&(angle, range)| {
-            let off = angle - towards - turn;
-            [range * off.cos(), range * off.sin()]
-        });
-        let ahead = seen.filter(|[depth, aside]| *depth > least && aside.abs() < ASKEW * depth);
-        let ahead: Vec<[f64; 2]> = ahead.collect();
-        let usual = median(ahead.iter().map(|&[depth, _]| depth)).unwrap_or_default();
-        let on_wall = ahead.iter().filter(|[depth, _]| (depth - usual).abs() < STRAIGHT);
-        extent(on_wall.map(|&[_, aside]| aside))
+        // How far ahead and how far to the left each line of sight ends.
+        let end = |&(angle, range): &(f64, f64)| {
+            let (aside, depth) = (angle - turn).sin_cos();
+            [range * depth, range * aside]
+        };
+        let is_ahead = |end: &[f64; 2]| end[0] > least && end[1].abs() < ASKEW * end[0];
+        let mut ends: Vec<[f64; 2]> = hits.iter().map(end).filter(is_ahead).collect();
+        let usual = median(ends.iter().map(|end| end[0])).unwrap_or_default();
+        ends.retain(|end| (end[0] - usual).abs() < STRAIGHT);
+        let walls = ends.chunk_by(|one, next| (next[1] - one[1]).abs() < DOOR);
+        walls.map(|wall| extent(wall.iter().map(|end| end[1]))).fold(0.0, f64::max)
     };
     TURNS.map(width).into_iter().fold(0.0, f64::max)
 }

@@ -8,7 +8,7 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use crate::{
     geometry::{angle, distance, unit},
     laser::{
-        arm_view::ArmView,
+        arm_view::{ArmView, wall_behind},
         clearances::Clearances,
         ends::{WayEnd, way_lengths},
         grid::{Cell, Grid},
@@ -643,8 +643,26 @@ fn status_of_mouth(seen: f64, goes_on: bool) -> &'static str {
 }
 
 #[test]
+fn the_back_of_a_niche_faces_its_junction_and_the_walls_of_an_arm_do_not() {
+    let (way, behind) = north(2.0, 2.0);
+    let meet = [20.0, 10.0].into();
+    let width = |unknown: &[Rectangle], towards: f64, least: f64| {
+        wall_behind(meet, towards, least, &map(&[CORRIDOR, way], unknown))
+    };
+    // Its corners are seen, too.
+    for askew in [-0.5, 0.0, 0.5] {
+        let back = width(&[], FRAC_PI_2 + askew, 1.5);
+        assert!((back - 2.0).abs() < 0.4, "{back}");
+    }
+    assert!(width(&[], FRAC_PI_2, 3.5) < 0.1, "it is nearer");
+    let sides = width(&[behind], FRAC_PI_2, 1.5);
+    assert!(sides < 0.8, "{sides} of an arm");
+    assert!(width(&[], -FRAC_PI_2, 1.5) < 0.1, "the wall of the corridor");
+}
+
+#[test]
 fn a_niche_of_which_a_side_is_unseen_is_no_arm() {
-    for seen in [1.25, 1.5, 1.75] {
+    for seen in [1.2, 1.5, 1.75] {
         assert_eq!(status_of_mouth(seen, false), "unseen", "{seen} m");
         assert_eq!(status_of_mouth(seen, true), "in doubt", "{seen} m");
     }
