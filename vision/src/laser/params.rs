@@ -160,9 +160,9 @@ params! {
         /// lay this far beyond the field of view, ... Logs and simulated buildings.
         unseen_turn: f64 = 0.3,
         /// ... is this many times as wide as the arm, because the edge of the field of view cuts the arm obliquely, or as
-        /// wide as the arm, because it cuts its mouth, ... Simulated buildings.
+        /// wide as the arm where that is cut at its mouth, ... Simulated buildings.
         unseen_gap: f64 = 1.3,
-        /// ... and no wall of this width faces the junction behind it, ... Logs: niches.
+        /// ... and no wall of this width faces the junction behind the mouth, ... Logs: niches.
         niche_wall: f64 = 1.2,
         /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower.
         unseen_width: f64 = 1.5,

@@ -314,12 +314,13 @@ impl WayGraph {
             && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
         // The door of a room is narrower, and behind it one sees more than its width.
         let is_door = width < params.min_width && end.gap > params.room_gap * width;
-        // The edge of the field of view cuts the arm, or its mouth, if what is seen there is no niche.
+        // The edge of the field of view cuts the arm, or its mouth, where what is seen is no niche.
         let is_mouth = || {
-            let towards = direction(meet.point, leaf.point);
             let behind = meet.clearance + params.min_behind;
-            end.gap >= width.max(params.min_width)
-                && wall_behind(meet.point, towards, behind, map) < params.niche_wall
+            way.length < behind
+                && end.gap >= width.max(params.min_width)
+                && wall_behind(meet.point, direction(meet.point, leaf.point), behind, map)
+                    < params.niche_wall
         };
         let may_be_cut = !is_door
             && 2.0 * leaf.clearance >= params.unseen_width

@@ -589,8 +589,7 @@ fn status_of_unseen(width: f64, opening: f64, turn: f64) -> &'static str {
 fn a_short_way_may_be_an_arm_if_the_scanner_did_not_look_at_its_end() {
     assert_eq!(status_of_unseen(2.0, 3.25, 1.1), "in doubt");
     assert_eq!(status_of_unseen(2.0, 3.25, -0.1), "unseen", "it looked nearly there");
-    assert_eq!(status_of_unseen(2.0, 2.0, 1.1), "in doubt", "the gap is as wide as the way");
-    assert_eq!(status_of_unseen(2.0, 1.625, 1.1), "unseen", "the gap is narrower");
+    assert_eq!(status_of_unseen(2.0, 2.0, 1.1), "unseen", "the gap is as wide as the way");
     // The doors of rooms are narrower, and one sees more than their width behind them.
     assert_eq!(status_of_unseen(1.375, 3.0, 1.1), "in doubt");
     assert_eq!(status_of_unseen(1.375, 7.0, 1.1), "unseen", "a room");
@@ -627,14 +626,15 @@ fn one_straight_wall_that_leads_away_beside_free_space_may_be_that_of_an_arm() {
     assert_eq!(status_of_wedge(8.0, unseen(), -0.1), "unseen", "the scanner looked there");
 }
 
-/// [`status`] of a way to the north, 2 m wide, of which the edge of the field of view shows this width 2 m behind the corridor,
-/// where it ends at a wall or goes on. The scanner is that of [`status_of_unseen`].
-fn status_of_mouth(seen: f64, goes_on: bool) -> &'static str {
-    let (way, behind) = north(2.0, 2.0);
-    let rows = (0..16).map(|row| CELL * f64::from(row));
+/// [`status`] of a way to the north of this width, of which the edge of the field of view shows so much so far behind the corridor.
+/// There it ends at a wall, or goes on. The scanner is that of [`status_of_unseen`].
+fn status_of_mouth(width: f64, depth: f64, seen: f64, goes_on: bool) -> &'static str {
+    let (way, behind) = north(width, depth);
+    let west = 20.0 - width / 2.0;
+    let rows = (0..(depth / CELL) as u32).map(|row| CELL * f64::from(row));
     let unseen = rows.map(|row| {
-        let edge = 19.0 + (2.0 - seen) * (row + CELL) / 2.0;
-        [[19.0, edge], [11.0 + row, 11.0 + row + CELL]]
+        let edge = west + (width - seen) * (row + CELL) / depth;
+        [[west, edge], [11.0 + row, 11.0 + row + CELL]]
     });
     let unknown: Vec<Rectangle> = unseen.chain(goes_on.then_some(behind)).collect();
     let scan = Scan::each_degree(-90, 181, |_| 1.0);
@@ -661,10 +661,13 @@ fn the_back_of_a_niche_faces_its_junction_and_the_walls_of_an_arm_do_not() {
 }
 
 #[test]
-fn a_niche_of_which_a_side_is_unseen_is_no_arm() {
-    for seen in [1.2, 1.5, 1.75] {
-        assert_eq!(status_of_mouth(seen, false), "unseen", "{seen} m");
-        assert_eq!(status_of_mouth(seen, true), "in doubt", "{seen} m");
+fn a_mouth_may_be_that_of_an_arm_unless_a_wall_faces_the_junction_behind_it() {
+    for seen in [0.5, 0.75, 1.0] {
+        assert_eq!(status_of_mouth(2.0, 1.0, seen, true), "in doubt", "{seen} m");
+        assert_eq!(status_of_mouth(2.0, 1.0, seen, false), "unseen", "{seen} m");
+    }
+    for seen in [1.5, 1.8, 2.1] {
+        assert_eq!(status_of_mouth(3.0, 2.0, seen, false), "unseen", "a niche, {seen} m of it");
     }
 }
 
