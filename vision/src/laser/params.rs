@@ -162,6 +162,8 @@ params! {
         /// ... is this many times as wide as the arm, because the edge of the field of view cuts the arm obliquely, or as
         /// wide as the arm where that is cut at its mouth, ... Simulated buildings.
         unseen_gap: f64 = 1.3,
+        /// ... (a mouth is where the middle line leads no farther than this behind the walls of the junction; logs: rooms) ...
+        mouth: f64 = 0.75,
         /// ... and no wall of this width faces the junction behind the mouth, ... Logs: niches.
         niche_wall: f64 = 1.2,
         /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower.

@@ -317,7 +317,7 @@ impl WayGraph {
         // The edge of the field of view cuts the arm, or its mouth, where what is seen is no niche.
         let is_mouth = || {
             let behind = meet.clearance + params.min_behind;
-            way.length < behind
+            way.length < meet.clearance + params.mouth
                 && end.gap >= width.max(params.min_width)
                 && wall_behind(meet.point, direction(meet.point, leaf.point), behind, map)
                     < params.niche_wall
