@@ -237,8 +237,9 @@ impl<S: Copy + Default> MappedRule<S> {
         if let Some(stay) = &mut self.stay
             && let Some(known) = self.junctions.at(stay.centre)
         {
-            // Earlier views may have shown the junction beside where the last ones do.
-            let is_gone = known.shown_by_last(LATELY) == Some(false);
+            // Earlier views may have shown the junction beside where the last ones do, if odometry has drifted.
+            let drifts = self.params.matching.rounds == 0;
+            let is_gone = drifts && known.shown_by_last(LATELY) == Some(false);
             let within = |place: &TrackedPlace| {
                 let is_there = is_gone
                     && place.shown_by_last(LATELY) == Some(true)
