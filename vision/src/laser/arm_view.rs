@@ -4,7 +4,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 use super::{clearances::Clearances, grid::Cell};
 use crate::{
@@ -123,17 +123,14 @@ pub(super) fn wall_behind(meet: Point2<f64>, towards: f64, least: f64, map: &Cle
     };
     let hits: Vec<(f64, f64)> = (-3 * FAN..=3 * FAN).filter_map(hit).collect();
     let width = |turn: f64| {
-        // How far ahead and how far to the left each line of sight ends.
-        let end = |&(angle, range): &(f64, f64)| {
-            let (aside, depth) = (angle - turn).sin_cos();
-            [range * depth, range * aside]
-        };
-        let is_ahead = |end: &[f64; 2]| end[0] > least && end[1].abs() < ASKEW * end[0];
-        let mut ends: Vec<[f64; 2]> = hits.iter().map(end).filter(is_ahead).collect();
-        let usual = median(ends.iter().map(|end| end[0])).unwrap_or_default();
-        ends.retain(|end| (end[0] - usual).abs() < STRAIGHT);
-        let walls = ends.chunk_by(|one, next| (next[1] - one[1]).abs() < DOOR);
-        walls.map(|wall| extent(wall.iter().map(|end| end[1]))).fold(0.0, f64::max)
+        let ends = hits.iter().map(|&(angle, range)| range * unit(angle - turn));
+        // The x axis leads ahead.
+        let is_ahead = |end: &Vector2<f64>| end.x > least && end.y.abs() < ASKEW * end.x;
+        let mut ends: Vec<Vector2<f64>> = ends.filter(is_ahead).collect();
+        let usual = median(ends.iter().map(|end| end.x)).unwrap_or_default();
+        ends.retain(|end| (end.x - usual).abs() < STRAIGHT);
+        let walls = ends.chunk_by(|one, next| (next.y - one.y).abs() < DOOR);
+        walls.map(|wall| extent(wall.iter().map(|end| end.y))).fold(0.0, f64::max)
     };
     TURNS.map(width).into_iter().fold(0.0, f64::max)
 }

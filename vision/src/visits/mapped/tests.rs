@@ -162,18 +162,26 @@ fn a_junction_that_earlier_views_show_beside_its_place_is_visited_where_the_last
     let arms = [PI, FRAC_PI_2, 0.0, -FRAC_PI_2];
     let [astray, cross] =
         [[-0.9, -0.9], [0.5, 0.6]].map(|[x, y]| place(Point2::new(x, y), 1.5, &arms));
-    // The robot turns to the right. It comes into the former first, and leaves it last.
-    let way = along(&[[-12.0, 0.0], [0.0, 0.0], [0.0, -12.0]], &[]);
-    let views = way.map(|(robot, ..)| {
-        let seen = if (-5.0..-4.0).contains(&robot.x) { &astray } else { &cross };
-        (robot, vec![seen.clone()], Vec::new())
-    });
-    let mut robot = Robot::default();
-    robot.params.visit.views = 40;
-    let visits = robot.visits(views);
-    let [visit] = &visits[..] else { panic!("{visits:?}") };
+    // The robot turns to the right. It comes into the former first, which is seen up to here, and leaves it last.
+    let visits = |seen_until: f64, rounds: usize| {
+        let way = along(&[[-12.0, 0.0], [0.0, 0.0], [0.0, -12.0]], &[]);
+        let views = way.map(|(robot, ..)| {
+            let seen = if (-5.0..seen_until).contains(&robot.x) { &astray } else { &cross };
+            (robot, vec![seen.clone()], Vec::new())
+        });
+        let mut robot = Robot::default();
+        robot.params.visit.views = 40;
+        robot.params.matching.rounds = rounds;
+        robot.visits(views)
+    };
+    let [visit] = &visits(-4.0, 0)[..] else { panic!() };
     assert_eq!(visit.alternatives(), [Some(VisitPercept { degree: 4, door: Some(3) })]);
-    assert!(distance(visit.centre, Point2::new(0.5, 0.6)) < 1e-9, "{}", visit.centre);
+    assert!(distance(visit.centre, cross.centre) < 1e-9, "{}", visit.centre);
+    // Where scans are matched, a place stays where it is.
+    for (rounds, centre) in [(0, cross.centre), (8, astray.centre)] {
+        let first = visits(-2.0, rounds)[0].centre;
+        assert!(distance(first, centre) < 1e-9, "{rounds} {first}");
+    }
 }
 
 #[test]
