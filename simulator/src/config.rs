@@ -103,3 +103,50 @@ pub fn starts_of(plan: &FloorPlan) -> Vec<Dart> {
     let is_l = |dart: &Dart| plan.junction(graph.vertex(*dart)).kind == JunctionKind::L;
     graph.darts().filter(is_l).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::{
+        format::{named_world::NamedWorld, world_file},
+        isomorphism::Candidate,
+        mapping::{FACING, MappingAlgorithm, MappingMethod},
+    };
+    use toposlam_robot::{
+        any_explorer::{AnyExplorer, RobotSensor},
+        run_settings::RunSettings,
+    };
+    use toposlam_vision::laser::params::LaserParams;
+
+    use super::*;
+    use crate::ScannerParams;
+
+    fn world(text: &[u8]) -> NamedWorld {
+        world_file::read(text).unwrap()
+    }
+
+    /// From the junction of a ring one sees 7 m to each side, up to a bend, and odometry turns by up to 20 degrees on the way
+    /// into one of them and back: whether views show an arm there is decided by a hair.
+    #[test]
+    fn a_robot_drives_into_arms_that_bend_out_of_sight_and_maps_the_corridors_of_a_real_building() {
+        let plan = world(include_bytes!("../../worlds/laser/seattle.toml"));
+        let real = world(include_bytes!("../../worlds/real/seattle.toml"));
+        let scanner = ScannerParams { noise: 0.01, ..ScannerParams::PLAIN };
+        let [facing, real_facing] = [&plan, &real].map(|world| world.start.unwrap());
+        let plan = Arc::new(plan.plan.unwrap());
+        for seed in 1..=10 {
+            let config = SimulationConfig {
+                noise: 0.1,
+                ..SimulationConfig::in_corridor(plan.clone(), facing, seed)
+            };
+            let sensor = RobotSensor::from(LaserParams::default());
+            let mut explorer = AnyExplorer::new(config.by_laser(&scanner), sensor, ());
+            let method = MappingMethod::from(MappingAlgorithm::Folding);
+            let (mapping, mapped) = explorer.map(&RunSettings::new(method, 20));
+            assert!(mapped.is_ok(), "{seed}: {mapped:?}");
+            let map = mapping.map().complete().unwrap();
+            let mut candidate = Candidate::default();
+            let bijection = candidate.of_starts((map, FACING), (&real.graph, real_facing));
+            assert!(bijection.verify(map, &real.graph), "{seed}: {map:?}");
+        }
+    }
+}

@@ -96,13 +96,17 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// The same by what the robot sees. The place becomes the one that it has seen last.
     fn doors_of(&mut self, last: &mut SeenPlace, entry: f64) -> Result<Option<Vec<f64>>, Stop> {
+        let mut doubted = DoubtedArms::new(entry, self.driving);
+        let turn = self.turn_of_map();
+        let possible = last.arms.iter().filter(|arm| !arm.is_certain());
+        doubted.add(possible.map(|arm| wrapped(arm.direction + turn)));
         self.look_around()?;
-        // The directions of the arms that it has looked into, and whether they are arms.
-        let mut known: Vec<(f64, bool)> = Vec::new();
+        let least_doors = if self.params.corner.corners { 2 } else { 3 };
         let (mut has_moved, mut tries, mut centred) = (false, 0, 0);
         for _ in 0..self.driving.looks {
             let status = self.visits.status().map(|place| self.unless_mistaken(place));
-            let Some(place) = status else {
+            // Where it has driven into an arm is a place, whatever the views show.
+            let Some(place) = status.or_else(|| doubted.has_arm().then(|| last.clone())) else {
                 let robot = self.on_local_map();
                 let off = |seen: &&SeenPlace| distance(seen.centre, robot);
                 let near = nearest(self.seen.last().into_iter().flatten(), off)
@@ -117,21 +121,17 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 centred += 1;
                 continue;
             }
-            let turn = self.turn_of_map();
-            last.clone_from(&place);
-            let is_known =
-                |arm: f64| known.iter().any(|known| self.driving.is_same_arm(known.0, arm));
-            let uncertain = self.uncertain_arms(&place).into_iter().map(|arm| wrapped(arm + turn));
-            let next = uncertain
-                .into_iter()
-                .find(|&arm| !self.driving.is_same_arm(arm, entry) && !is_known(arm));
-            if let Some(arm) = next {
+            last.clone_from(self.in_last_view(&place).unwrap_or(&place));
+            let seen = self.seen_arms(&place);
+            doubted.add(seen.iter().filter(|arm| !arm.is_certain).map(|arm| arm.direction));
+            let certain = seen.iter().filter(|arm| arm.is_certain).map(|arm| arm.direction);
+            if let Some(arm) = doubted.next(certain, least_doors) {
                 let (_, is_arm) = self.look_into(arm, false)?;
-                known.push((arm, is_arm.ok_or(CorridorFailure::Undecided)?));
+                doubted.decide(arm, is_arm.ok_or(CorridorFailure::Undecided)?);
                 continue;
             }
             let is_undecided = place.arms.iter().any(|arm| arm.certainty == Certainty::Possible);
-            if is_undecided && known.is_empty() {
+            if is_undecided && !doubted.is_decided() {
                 if tries == 2 {
                     return Err(CorridorFailure::Undecided.into());
                 }
@@ -139,24 +139,14 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 self.look_from_further(entry + PI * f64::from(tries))?;
                 continue;
             }
-            let doors: Vec<f64> = if is_undecided {
-                let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
-                seen_at(view, &place, self.driving.at_centre)
-                    .into_iter()
-                    .flat_map(SeenPlace::directions)
-                    .collect()
+            let doors = if doubted.is_decided() {
+                seen.iter().map(|arm| arm.direction).collect()
             } else {
-                place.arms.iter().filter(|arm| arm.is_certain()).map(|arm| arm.direction).collect()
+                let turn = self.turn_of_map();
+                let certain = place.arms.iter().filter(|arm| arm.is_certain());
+                certain.map(|arm| wrapped(arm.direction + turn)).collect()
             };
-            let mut doors: Vec<f64> = doors.into_iter().map(|door| wrapped(door + turn)).collect();
-            for &(arm, is_arm) in &known {
-                if !is_arm {
-                    doors.retain(|&door| !self.driving.is_same_arm(door, arm));
-                } else if !doors.iter().any(|&door| self.driving.is_same_arm(door, arm)) {
-                    doors.push(arm);
-                }
-            }
-            return in_order(doors, entry, self.driving, &self.params.corner);
+            return in_order(doubted.doors(doors), entry, self.driving, &self.params.corner);
         }
         Err(CorridorFailure::Undecided.into())
     }
@@ -174,10 +164,14 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         beside.filter(is_certain).cloned().unwrap_or(place)
     }
 
+    /// The same place, as the last view shows it.
+    fn in_last_view(&self, place: &SeenPlace) -> Option<&SeenPlace> {
+        seen_at(self.seen.last()?, place, self.driving.at_centre)
+    }
+
     /// Goes to the centre of a place, as the last view shows it, and looks around there. Returns whether it was farther away.
     fn goes_to_centre_of(&mut self, place: &SeenPlace) -> Result<bool, Stop> {
-        let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
-        let seen = seen_at(view, place, self.driving.at_centre).unwrap_or(place).clone();
+        let seen = self.in_last_view(place).unwrap_or(place).clone();
         let is_off = distance(seen.centre, self.on_local_map()) > self.driving.off_centre;
         if is_off {
             self.go_to(&seen)?;
@@ -241,8 +235,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         self.look_around()
     }
 
-    /// The directions of the arms of a place on the local map that are not certain in most of the last views.
-    fn uncertain_arms(&self, place: &SeenPlace) -> Vec<f64> {
+    /// The arms of a place on the local map that at least two of the last views show.
+    fn seen_arms(&self, place: &SeenPlace) -> Vec<SeenArm> {
         let views = &self.seen[self.seen.len().saturating_sub(self.driving.views)..];
         // The direction, the number of views that show the arm, and of those in which it is certain.
         let mut arms: Vec<(f64, usize, usize)> = Vec::new();
@@ -256,8 +250,12 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             }
         }
         let enough = (self.driving.certain * views.len() as f64).ceil() as usize;
-        let uncertain = arms.iter().filter(|arm| arm.1 > 1 && arm.2 < enough);
-        uncertain.map(|&(arm, ..)| arm).collect()
+        let turn = self.turn_of_map();
+        let seen = |(direction, _, certain)| SeenArm {
+            direction: wrapped(direction + turn),
+            is_certain: certain >= enough,
+        };
+        arms.into_iter().filter(|arm| arm.1 > 1).map(seen).collect()
     }
 
     /// The direction from a place to where the robot was before.
@@ -280,6 +278,89 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             };
             distance(left.centre, place.centre) < reach
         })
+    }
+}
+
+/// An arm that several views show.
+struct SeenArm {
+    direction: f64,
+    /// Whether it is certain in most of the views.
+    is_certain: bool,
+}
+
+/// The arms of a place of which a robot does not see enough, and what it found out when it drove into them. Views that follow
+/// may not show an arm that is there: the robot has looked from elsewhere, and what is possible is often so by a hair.
+struct DoubtedArms<'d> {
+    /// The direction in which the robot came in: an arm.
+    entry: f64,
+    driving: &'d CorridorParams,
+    /// The directions, and whether they are arms; `None` if the robot has not driven into them.
+    arms: Vec<(f64, IsArm)>,
+}
+
+impl<'d> DoubtedArms<'d> {
+    fn new(entry: f64, driving: &'d CorridorParams) -> Self {
+        Self { entry, driving, arms: Vec::new() }
+    }
+
+    fn is_old(&self, direction: f64) -> bool {
+        let mut old = self.arms.iter().map(|arm| arm.0).chain([self.entry]);
+        old.any(|old| self.driving.is_same_arm(old, direction))
+    }
+
+    fn add(&mut self, directions: impl Iterator<Item = f64>) {
+        for direction in directions {
+            if !self.is_old(direction) {
+                self.arms.push((direction, None));
+            }
+        }
+    }
+
+    fn decide(&mut self, direction: f64, is_arm: bool) {
+        for arm in self.arms.iter_mut().filter(|arm| arm.0 == direction) {
+            arm.1 = Some(is_arm);
+        }
+    }
+
+    /// Whether the robot has driven into an arm.
+    fn has_arm(&self) -> bool {
+        self.arms.iter().any(|arm| arm.1 == Some(true))
+    }
+
+    /// Whether it has driven into anything.
+    fn is_decided(&self) -> bool {
+        self.arms.iter().any(|arm| arm.1.is_some())
+    }
+
+    /// The arm into which to drive next, if with all those in doubt and these certain ones there are enough doors.
+    fn next(&self, certain: impl Iterator<Item = f64>, least_doors: usize) -> Option<f64> {
+        let certain: Vec<f64> = certain.collect();
+        let is_certain =
+            |arm: f64| certain.iter().any(|&known| self.driving.is_same_arm(known, arm));
+        let is_open = |arm: &&(f64, IsArm)| arm.1.is_none() && !is_certain(arm.0);
+        let is_door = |arm: &&(f64, IsArm)| arm.1 != Some(false) && !is_certain(arm.0);
+        let is_other = |arm: &&f64| !self.driving.is_same_arm(**arm, self.entry);
+        let certain_doors = certain.iter().filter(is_other).count();
+        let doors = 1 + certain_doors + self.arms.iter().filter(is_door).count();
+        let next = self.arms.iter().find(is_open);
+        next.filter(|_| doors >= least_doors).map(|arm| arm.0)
+    }
+
+    /// These doors without what is no arm, and with what is one.
+    fn doors(&self, mut doors: Vec<f64>) -> Vec<f64> {
+        let is_in =
+            |doors: &[f64], arm| doors.iter().any(|&door| self.driving.is_same_arm(door, arm));
+        for &(arm, is_arm) in &self.arms {
+            match is_arm {
+                Some(false) => doors.retain(|&door| !self.driving.is_same_arm(door, arm)),
+                Some(true) if !is_in(&doors, arm) => doors.push(arm),
+                _ => {}
+            }
+        }
+        if self.has_arm() && !is_in(&doors, self.entry) {
+            doors.push(self.entry);
+        }
+        doors
     }
 }
 
@@ -326,6 +407,33 @@ mod tests {
             Err(Stop::Failure(CorridorFailure::Undecided)) => Some(Vec::new()),
             Err(Stop::Failure(_) | Stop::Error(_)) => panic!(),
         }
+    }
+
+    #[test]
+    fn a_robot_drives_into_each_arm_that_was_in_doubt_and_believes_that_whatever_it_sees_later() {
+        let none = || [].into_iter();
+        let mut doubted = DoubtedArms::new(PI, &CorridorParams::DEFAULT);
+        doubted.add([1.5, -1.4, -3.1].into_iter());
+        assert_eq!(doubted.next([-1.5].into_iter(), 3), Some(1.5), "the other one is certain");
+        assert_eq!(doubted.next([0.0].into_iter(), 5), None, "there are at most four doors");
+        doubted.decide(1.5, true);
+        doubted.add([1.3].into_iter());
+        assert_eq!(doubted.next(none(), 3), Some(-1.4), "no view shows any of them now");
+        doubted.decide(-1.4, true);
+        assert_eq!(doubted.next(none(), 3), None);
+        assert_eq!(doubted.doors(Vec::new()), [1.5, -1.4, PI], "it came in somewhere, too");
+        assert_eq!(doubted.doors(vec![3.0, 1.6]), [3.0, 1.6, -1.4]);
+    }
+
+    #[test]
+    fn what_is_no_arm_is_no_door_and_the_last_one_in_doubt_may_not_matter() {
+        let mut doubted = DoubtedArms::new(PI, &CorridorParams::DEFAULT);
+        doubted.add([1.5, -1.4].into_iter());
+        doubted.decide(1.5, false);
+        assert_eq!(doubted.next([].into_iter(), 3), None, "two doors are no junction");
+        assert_eq!(doubted.next([].into_iter(), 2), Some(-1.4), "but perhaps a corner");
+        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(-1.4));
+        assert_eq!(doubted.doors(vec![1.6, 0.0]), [0.0]);
     }
 
     #[test]
