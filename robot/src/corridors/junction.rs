@@ -97,9 +97,6 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     /// The same by what the robot sees. The place becomes the one that it has seen last.
     fn doors_of(&mut self, last: &mut SeenPlace, entry: f64) -> Result<Option<Vec<f64>>, Stop> {
         let mut doubted = DoubtedArms::new(entry, self.driving);
-        let turn = self.turn_of_map();
-        let possible = last.arms.iter().filter(|arm| !arm.is_certain());
-        doubted.add(possible.map(|arm| wrapped(arm.direction + turn)));
         self.look_around()?;
         let least_doors = if self.params.corner.corners { 2 } else { 3 };
         let (mut has_moved, mut tries, mut centred) = (false, 0, 0);
@@ -126,8 +123,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             doubted.add(seen.iter().filter(|arm| !arm.is_certain).map(|arm| arm.direction));
             let certain = seen.iter().filter(|arm| arm.is_certain).map(|arm| arm.direction);
             if let Some(arm) = doubted.next(certain, least_doors) {
-                let (_, is_arm) = self.look_into(arm, false)?;
-                doubted.decide(arm, is_arm.ok_or(CorridorFailure::Undecided)?);
+                let (driven, is_arm) = self.look_into(arm, false)?;
+                let is_arm = is_arm.ok_or(CorridorFailure::Undecided)?;
+                // Where there is no way it may have turned into another one.
+                doubted.decide(arm, is_arm && self.driving.is_same_arm(driven, arm));
                 continue;
             }
             let is_undecided = place.arms.iter().any(|arm| arm.certainty == Certainty::Possible);
@@ -139,12 +138,14 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 self.look_from_further(entry + PI * f64::from(tries))?;
                 continue;
             }
-            let doors = if doubted.is_decided() {
-                seen.iter().map(|arm| arm.direction).collect()
+            let turn = self.turn_of_map();
+            let doors = if place.arms.is_empty() || is_undecided {
+                seen.iter()
+                    .filter(|arm| is_undecided || arm.is_certain)
+                    .map(|arm| arm.direction)
+                    .collect()
             } else {
-                let turn = self.turn_of_map();
-                let certain = place.arms.iter().filter(|arm| arm.is_certain());
-                certain.map(|arm| wrapped(arm.direction + turn)).collect()
+                place.directions().map(|door| wrapped(door + turn)).collect()
             };
             return in_order(doubted.doors(doors), entry, self.driving, &self.params.corner);
         }
@@ -191,11 +192,15 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         self.heading = towards;
         let least = self.params.arm.min_arm;
         let (mut length, mut is_leaving) = (0.0, true);
+        let mut left: Option<Point2<f64>> = None;
         let is_arm = loop {
             let before = self.at();
             let no_way = self.step(is_leaving)?;
             is_leaving = false;
             length += distance(before, self.at());
+            if distance(begin, self.at()) >= self.driving.leaving_measured {
+                left.get_or_insert(self.at());
+            }
             match no_way {
                 _ if length >= least => break Some(true),
                 None => {}
@@ -203,7 +208,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 Some(NoWay::Unseen | NoWay::Obstacle) => break None,
             }
         };
-        let far = self.at();
+        let far = left.unwrap_or(self.at());
         self.drive_back(first, begin)?;
         self.trail.end_side_trip(first);
         if let Some(SideTrip { visits, near, .. }) = self.side_trip.take() {
