@@ -140,10 +140,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             }
             let turn = self.turn_of_map();
             let doors = if place.arms.is_empty() || is_undecided {
-                seen.iter()
-                    .filter(|arm| is_undecided || arm.is_certain)
-                    .map(|arm| arm.direction)
-                    .collect()
+                let is_door = |arm: &&SeenArm| is_undecided || arm.is_certain && doubted.has_arm();
+                seen.iter().filter(is_door).map(|arm| arm.direction).collect()
             } else {
                 place.directions().map(|door| wrapped(door + turn)).collect()
             };
