@@ -83,6 +83,15 @@ impl RosOptions {
         self.ros2 || self.ros.is_some()
     }
 
+    /// Checks that this program speaks the ROS of the robot, if one is given.
+    pub(super) fn check_build(&self) -> Result<(), CliError> {
+        let is_built = match (&self.ros, self.ros2) {
+            (Some(_), _) => cfg!(feature = "ros1"),
+            (None, is_ros2) => cfg!(feature = "ros2") || !is_ros2,
+        };
+        if is_built { Ok(()) } else { Err(self.missing()) }
+    }
+
     /// Where the topics are, in words.
     #[cfg(any(feature = "ros1", feature = "ros2"))]
     pub(super) fn place(&self) -> Result<String, CliError> {
@@ -187,7 +196,6 @@ impl RosOptions {
     }
 
     /// The error of a program that does not speak this ROS.
-    #[cfg(not(all(feature = "ros1", feature = "ros2")))]
     pub(super) fn missing(&self) -> CliError {
         let (option, version) = if self.ros.is_some() { ("--ros", 1) } else { ("--ros2", 2) };
         let cause = format!(

@@ -181,10 +181,7 @@ type Equipped<'s> = Box<dyn Fn(&SimulationConfig) -> SimulatedRobot + 's>;
 
 impl SimulateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        #[cfg(not(any(feature = "ros1", feature = "ros2")))]
-        if self.ros.is_given() {
-            return Err(self.ros.missing());
-        }
+        self.ros.check_build()?;
         let begun = Instant::now();
         let simulation = self.prepare()?;
         #[cfg(any(feature = "ros1", feature = "ros2"))]

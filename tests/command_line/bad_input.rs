@@ -10,6 +10,8 @@ fn the_error_of_a_build_without_a_feature_has_the_command_that_adds_it() {
     for (is_built, feature, line) in [
         (cfg!(feature = "ros1"), "ros1", format!("drive --calibration c --colours d {ros}")),
         (cfg!(feature = "ros1"), "ros1", format!("simulate worlds/shape-6.toml {ros}")),
+        (cfg!(feature = "ros2"), "ros2", "drive --sensor laser --ros2".to_owned()),
+        (cfg!(feature = "ros2"), "ros2", "simulate worlds/shape-6.toml --ros2".to_owned()),
         (cfg!(feature = "cluster"), "cluster", format!("check {hosts}")),
         (cfg!(feature = "cluster"), "cluster", format!("counterexample {hosts}")),
     ] {

@@ -25,6 +25,7 @@ use crate::cli::{
 
 impl DriveArguments {
     pub(in crate::cli) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        self.ros.check_build()?;
         self.options.check_places(false)?;
         let settings = self.options.settings(None)?;
         let sensors = self.sensors()?;
