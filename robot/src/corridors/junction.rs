@@ -320,7 +320,8 @@ impl<'d> DoubtedArms<'d> {
     }
 
     fn decide(&mut self, direction: f64, is_arm: bool) {
-        for arm in self.arms.iter_mut().filter(|arm| arm.0 == direction) {
+        let Self { driving, arms, .. } = self;
+        if let Some(arm) = arms.iter_mut().find(|arm| driving.is_same_arm(arm.0, direction)) {
             arm.1 = Some(is_arm);
         }
     }
