@@ -79,6 +79,7 @@ const MOST_DOMAINS: u16 = 232;
 type ConnectedRobot = (LiveRobot, Box<dyn RunObserver>);
 
 impl RosOptions {
+    #[cfg(any(feature = "ros1", feature = "ros2"))]
     pub(super) fn is_given(&self) -> bool {
         self.ros2 || self.ros.is_some()
     }
