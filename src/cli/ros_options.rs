@@ -86,9 +86,10 @@ impl RosOptions {
 
     /// Checks that this program speaks the ROS of the robot, if one is given.
     pub(super) fn check_build(&self) -> Result<(), CliError> {
-        let is_built = match (&self.ros, self.ros2) {
-            (Some(_), _) => cfg!(feature = "ros1"),
-            (None, is_ros2) => cfg!(feature = "ros2") || !is_ros2,
+        let is_built = if self.ros.is_some() {
+            cfg!(feature = "ros1")
+        } else {
+            cfg!(feature = "ros2") || !self.ros2
         };
         if is_built { Ok(()) } else { Err(self.missing()) }
     }

@@ -124,9 +124,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             let certain = seen.iter().filter(|arm| arm.is_certain).map(|arm| arm.direction);
             if let Some(arm) = doubted.next(certain, least_doors) {
                 let (driven, is_arm) = self.look_into(arm, false)?;
-                let is_arm = is_arm.ok_or(CorridorFailure::Undecided)?;
-                // Where there is no way it may have turned into another one.
-                doubted.decide(arm, is_arm && self.driving.is_same_arm(driven, arm));
+                // If it turned into another way, nothing is known of this one.
+                let is_there = self.driving.is_same_arm(driven, arm);
+                let is_arm = is_arm.filter(|_| is_there).ok_or(CorridorFailure::Undecided)?;
+                doubted.decide(arm, is_arm);
                 continue;
             }
             let is_undecided = place.arms.iter().any(|arm| arm.certainty == Certainty::Possible);
@@ -139,8 +140,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 continue;
             }
             let turn = self.turn_of_map();
-            let doors = if place.arms.is_empty() || is_undecided {
-                let is_door = |arm: &&SeenArm| is_undecided || arm.is_certain && doubted.has_arm();
+            let doors = if is_undecided || place.arms.is_empty() && doubted.has_arm() {
+                let is_door = |arm: &&SeenArm| is_undecided || arm.is_certain;
                 seen.iter().filter(is_door).map(|arm| arm.direction).collect()
             } else {
                 place.directions().map(|door| wrapped(door + turn)).collect()

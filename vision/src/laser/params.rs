@@ -176,7 +176,7 @@ params! {
         room_gap: f64 = 3.5,
         /// A way ends where one sees a wall ahead that is this part of its width, ... Geometry: less is furniture.
         facing_wall: f64 = 0.6,
-        /// ... unless straight walls along this part of it are seen on both sides: then it bends. Logs.
+        /// ... unless straight walls along this part of it are seen on both sides: then it bends. Logs and plans.
         bend_wall: f64 = 0.2,
         /// Two ways around an obstacle are one if they are shorter together. Geometry: an obstacle 2 m long in a corridor.
         around_obstacle: f64 = 10.0,

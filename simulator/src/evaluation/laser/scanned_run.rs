@@ -249,6 +249,15 @@ mod tests {
         assert!(blocked > 0 || matches!(run.outcome, RobotOutcome::GaveUp(_)), "{run:?}");
     }
 
+    /// Beside a corridor something looks like an arm, and when the robot drives into it, it turns back into the corridor.
+    #[test]
+    fn an_arm_is_undecided_if_the_robot_turned_into_another_way() {
+        let run = sampler(BuildingKind::Long, 4).run(13, folding(), &()).unwrap();
+        let RobotOutcome::GaveUp(why) = &run.outcome else { panic!("{run:?}") };
+        assert!(why.contains("what the junction is like is undecided"), "{why}");
+        assert_eq!(run.tally.wrong, 0, "{run:?}");
+    }
+
     /// A scanner that does not look behind the robot, and with which it looks around beside openings. In these runs it does so
     /// beside an alcove that the last scan before shows as its way, beside the door of a room, and where it is already on its
     /// way into an alcove.
