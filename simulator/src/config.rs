@@ -133,7 +133,8 @@ mod tests {
         let scanner = ScannerParams { noise: 0.01, ..ScannerParams::PLAIN };
         let [facing, real_facing] = [&plan, &real].map(|world| world.start.unwrap());
         let plan = Arc::new(plan.plan.unwrap());
-        for seed in 1..=10 {
+        // With seed 23 a place lies half a metre from where earlier views showed it.
+        for seed in (1..=10).chain([23]) {
             let config = SimulationConfig {
                 noise: 0.1,
                 ..SimulationConfig::in_corridor(plan.clone(), facing, seed)
