@@ -168,7 +168,9 @@ impl Entries<'_> {
                     self.add(message, stamp, EventKind::Frame(Frame { scan, ..frame }).into());
                 }
                 (role @ (Role::Scan | Role::Odometry), _) if carried.own && is_carmen => {
-                    let recorded = carmen::reading(&topic.type_name, &value, &file.text.parameters);
+                    let parameters = &file.text.parameters;
+                    let recorded =
+                        carmen::reading(&topic.type_name, &value, parameters, &mut self.repairs);
                     let RecordedScan { scan, odometry } = recorded.map_err(wrong)?;
                     let is_wanted = role == Role::Odometry || self.bound.carries(Role::Odometry);
                     if let Some(odometry) = odometry.filter(|_| is_wanted) {

@@ -1,5 +1,6 @@
 //! How scans write that there is no return. By REP 117 that is an infinite range; many drivers write a little less
-//! than the largest range, 0 or not a number.
+//! than the largest range, 0 or not a number, and a scanner may have a sign of its own far below the largest range that
+//! its driver states: 50 m of 81.9 m.
 
 use std::{cmp::Reverse, fmt};
 
@@ -24,8 +25,14 @@ impl fmt::Display for NoReturnSign {
     }
 }
 
-/// The readings without a return are at most this far below the largest range, in bins, of which one is a centimetre.
-const BINS: usize = 100;
+/// The readings without a return are at most this far below the largest range, in metres, ...
+const BELOW: f64 = 1.0;
+/// ... or beyond this range: few walls are seen from there.
+const BEYOND: f64 = 40.0;
+/// The bins of a metre.
+const BINS: f64 = 100.0;
+/// No scanner has a larger range, in metres.
+const FARTHEST: f64 = 1000.0;
 /// They lie within so many bins.
 const WIDTH: usize = 6;
 /// Those of walls at the same distance from the scanner are at most one in so many of them.
@@ -34,6 +41,7 @@ const SHARE: usize = 5;
 const SEEN: usize = 500;
 
 /// The readings of scans by their range.
+#[derive(Default)]
 pub(super) struct RangeHistogram {
     all: usize,
     zeros: usize,
@@ -45,19 +53,16 @@ pub(super) struct RangeHistogram {
     bins: Vec<usize>,
 }
 
-impl Default for RangeHistogram {
-    fn default() -> Self {
-        let bins = vec![0; BINS];
-        Self { all: 0, zeros: 0, not_numbers: 0, beyond: 0, range_max: 0.0, bins }
-    }
-}
-
 impl RangeHistogram {
     /// Adds the readings of a scan.
     pub(super) fn add(&mut self, scan: &Value<'_>) {
-        let Some(range_max) = scan.get::<f64>("range_max") else { return };
-        let Some(Value::Numbers(ranges)) = scan.at("ranges") else { return };
+        let range_max = ["range_max", "maximum_range"].into_iter().find_map(|name| scan.get(name));
+        let Some(range_max) = range_max.filter(|range| (BELOW..FARTHEST).contains(range)) else {
+            return;
+        };
+        let Some(ranges) = scan.at("ranges").and_then(|ranges| ranges.elements()) else { return };
         self.range_max = range_max;
+        self.bins.resize((BINS * BELOW.max(range_max - BEYOND)) as usize, 0);
         for range in ranges.iter().filter_map(|range| range.f64()) {
             self.all += 1;
             if range.is_nan() {
@@ -66,7 +71,7 @@ impl RangeHistogram {
                 self.zeros += 1;
             } else if range >= range_max {
                 self.beyond += 1;
-            } else if let Some(bin) = self.bins.get_mut(((range_max - range) * 100.0) as usize) {
+            } else if let Some(bin) = self.bins.get_mut(((range_max - range) * BINS) as usize) {
                 *bin += 1;
             }
         }
@@ -86,7 +91,7 @@ impl RangeHistogram {
         if most >= enough && of_walls * SHARE <= most {
             let bins = self.bins.get(first..first + WIDTH).unwrap_or_default();
             let last = bins.iter().rposition(|bin| *bin * SHARE * 2 > most).unwrap_or(0);
-            return Some(NoReturnSign::From(self.range_max - (first + last + 1) as f64 / 100.0));
+            return Some(NoReturnSign::From(self.range_max - (first + last + 1) as f64 / BINS));
         }
         let sign = if self.zeros >= self.not_numbers {
             NoReturnSign::Zero
@@ -113,7 +118,7 @@ mod tests {
             not_numbers,
             beyond,
             range_max: 50.0,
-            bins: vec![0; BINS],
+            bins: vec![0; 1000],
         };
         for &(bin, count) in bins {
             histogram.bins[bin] += count;
@@ -128,10 +133,12 @@ mod tests {
         // With noise, and walls beside them.
         assert!(from(49.94)(sign(0, 0, 0, &[(3, 10), (4, 60), (5, 20), (40, 3), (90, 2)])));
         // Walls all the way up to the range.
-        let walls: Vec<_> = (0..BINS).map(|bin| (bin, 9)).collect();
+        let walls: Vec<_> = (0..100).map(|bin| (bin, 9)).collect();
         assert_eq!(sign(0, 0, 0, &walls), None);
         assert_eq!(sign(0, 60, 5, &[]), Some(NoReturnSign::Zero));
         assert_eq!(sign(0, 5, 60, &[]), Some(NoReturnSign::NotANumber));
+        // Far below the range that the driver states, with few walls beyond.
+        assert!(from(42.5)(sign(0, 0, 0, &[(749, 80), (300, 12)])));
         // Few of them are errors, and infinite ranges are the usual sign.
         assert_eq!(sign(0, 10, 10, &[(4, 10)]), None);
         assert_eq!(sign(60, 600, 0, &[(4, 80)]), None);

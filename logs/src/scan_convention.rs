@@ -19,7 +19,8 @@ pub(super) fn of_topic(log: &Log, index: usize) -> Option<NoReturnSign> {
 
 fn surveyed(log: &Log, index: usize) -> Option<NoReturnSign> {
     let topic = log.topics().get(index)?;
-    if topic.short_type() != "sensor_msgs/LaserScan" {
+    let has_largest_range = ["sensor_msgs/LaserScan", "carmen/RAWLASER", "carmen/ROBOTLASER"];
+    if !has_largest_range.iter().any(|kind| topic.short_type().starts_with(kind)) {
         return None;
     }
     let mut histogram = RangeHistogram::default();
@@ -63,6 +64,14 @@ impl ScanRepairs {
             return f32::INFINITY;
         }
         range as f32
+    }
+
+    /// The largest range of a scanner, of which its driver states this one: it sees nothing beyond its sign.
+    pub(super) fn range_max(&self, stated: f64) -> f64 {
+        match self.sign {
+            Some(NoReturnSign::From(from)) => stated.min(from),
+            _ => stated,
+        }
     }
 
     /// The increment of the angle of a scan with so many readings, in radians.

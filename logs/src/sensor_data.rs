@@ -77,7 +77,7 @@ pub(super) fn scan_of(
         angle_min: first,
         angle_increment: increment,
         range_min: message.number_at("range_min")?,
-        range_max: message.number_at("range_max")?,
+        range_max: repairs.range_max(message.number_at("range_max")?),
     });
     let ranges = ranges.into_iter().map(|range| repairs.range(range)).collect();
     Scan::new(geometry, ranges, mount.robot_from_scanner).map_err(|error| error.to_string())

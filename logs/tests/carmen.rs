@@ -209,6 +209,29 @@ fn the_kinds_of_scans_are_read_alike() {
 }
 
 #[test]
+fn a_scanner_sees_nothing_at_a_range_below_the_one_that_its_driver_states() {
+    let line = |kind: &str, ranges: &str, tail: &str| {
+        format!(
+            "ODOM 0 0 0 0 0 0 5 h 5\n{kind} 0 -1.5707963 3.1415927 1.5707963 81.92 0.01 0 3 {ranges} 0 {tail}5 h 5\n"
+        )
+    };
+    for (kind, tail) in [("RAWLASER1", ""), ("ROBOTLASER1", "0 0 0 0 0 0 0 0 0 0 0 ")] {
+        for (none, walls, readings) in [
+            ("50", "49.5", [Reading::Hit(1.5), Reading::Hit(49.5), Reading::NoReturn]),
+            ("81.91", "60", [Reading::Hit(1.5), Reading::Hit(60.0), Reading::NoReturn]),
+        ] {
+            let one = line(kind, &format!("1.5 2.5 {none}"), tail);
+            let text = one.repeat(60) + &line(kind, &format!("1.5 {walls} {none}"), tail);
+            let log = Log::of_bytes(text.into()).unwrap();
+            let read = scans(&log);
+            let (_, _, scan) = read.last().unwrap();
+            let last: Vec<_> = scan.readings().map(|(_, reading)| reading).collect();
+            assert_eq!(last, readings, "{kind} {none}");
+        }
+    }
+}
+
+#[test]
 fn a_compressed_database_that_was_cut_is_an_error_with_its_place() {
     let database = [b"SQLite format 3\0", &[7; 5000][..]].concat();
     let whole = gzip(&database);

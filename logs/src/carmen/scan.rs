@@ -9,7 +9,7 @@ use toposlam_vision::{
 };
 
 use super::Parameters;
-use crate::value::Value;
+use crate::{scan_convention::ScanRepairs, value::Value};
 
 /// At this range the SICK scanners of these robots see nothing; 81.9 m is their sign of an error.
 const OLD_RANGE: f64 = 50.0;
@@ -28,11 +28,12 @@ pub(crate) fn reading(
     type_name: &str,
     line: &Value<'_>,
     parameters: &Parameters,
+    repairs: &mut ScanRepairs,
 ) -> Result<RecordedScan, String> {
     let ranges = line.at("ranges").and_then(|ranges| ranges.elements());
     let ranges = ranges.ok_or("it has no list `ranges`")?;
     let ranges: Vec<_> =
-        ranges.iter().map(|range| range.f64().unwrap_or(f64::NAN) as f32).collect();
+        ranges.iter().map(|range| repairs.range(range.f64().unwrap_or(f64::NAN))).collect();
     let is_rear = matches!(type_name, "carmen/RLASER" | "carmen/RAWLASER2" | "carmen/ROBOTLASER2");
     let mount = if is_rear { parameters.rear } else { parameters.front };
     let odometry = match line.at("odom_x") {
@@ -49,7 +50,7 @@ pub(crate) fn reading(
         _ => None,
     };
     let geometry = match line.at("start_angle") {
-        Some(_) => geometry(line)?,
+        Some(_) => geometry(line, repairs)?,
         None => old_geometry(ranges.len()),
     };
     let scan = Scan::new(geometry, ranges, recorded.unwrap_or(mount.on_robot()));
@@ -75,13 +76,13 @@ fn old_geometry(readings: usize) -> ScanGeometry {
     }
 }
 
-fn geometry(line: &Value<'_>) -> Result<ScanGeometry, String> {
+fn geometry(line: &Value<'_>, repairs: &ScanRepairs) -> Result<ScanGeometry, String> {
     let most = line.finite_at("maximum_range")?;
     Ok(ScanGeometry {
         angle_min: line.finite_at("start_angle")?,
         angle_increment: line.finite_at("angular_resolution")?,
         range_min: 0.0,
-        range_max: if most > 0.0 { most } else { OLD_RANGE },
+        range_max: repairs.range_max(if most > 0.0 { most } else { OLD_RANGE }),
     })
 }
 

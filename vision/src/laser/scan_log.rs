@@ -4,10 +4,18 @@
 //! is certain if the robot drove it on any pass whose scans agree with the map. What is seen at a place depends on the scans
 //! near it alone, whatever the log shows before, wherever it begins, and however the frame of its odometry lies:
 //!
-//! * which scans are used is decided in the order of a hash of their readings, not from the first one on;
+//! * which scans are used is decided in the order of a hash of their readings, not from the first one on, and so is which of
+//!   them are keyframes;
 //! * the cells of each local map begin at the robot, along the walls that its scan shows.
+//!
+//! Whether another pass is of the same place, and how it lies there, is found once for each keyframe.
 
-use std::{cell::LazyCell, collections::BTreeMap, sync::Arc};
+use std::{
+    cell::LazyCell,
+    collections::BTreeMap,
+    ops::Range,
+    sync::{Arc, OnceLock},
+};
 
 use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::odometry::Odometry;
@@ -55,6 +63,21 @@ struct LoggedScan {
     rays: Rays,
     /// In the robot's frame.
     walls: Vec<WallPoint>,
+    /// The index of its keyframe.
+    keyframe: usize,
+    /// If it is a keyframe: the other passes by its place, once they are asked for.
+    passes: OnceLock<Vec<Pass>>,
+}
+
+/// Another pass by the place of a keyframe whose scans agree with the scans around that keyframe.
+#[derive(Clone, Debug)]
+struct Pass {
+    /// The indices of its scans.
+    scans: Vec<usize>,
+    /// The small motion that lays its walls on those around the keyframe.
+    correction: Isometry2<f64>,
+    /// Whether it agrees beyond doubt.
+    is_sure: bool,
 }
 
 /// A scan on a local map.
@@ -94,6 +117,8 @@ const AGREES_WELL: f64 = 0.95;
 const APART: f64 = 0.9;
 /// The number of other passes that a map may have: the nearest ones along the way.
 const PASSES: usize = 12;
+/// The hash of a keyframe is less than that of all scans this near along the way, in metres. Geometry: a corridor's width.
+const KEYFRAME: f64 = 2.0;
 
 /// Takes the scans of a log. It keeps only those that are used, and the last ones.
 #[derive(Clone, Debug)]
@@ -147,8 +172,20 @@ impl ScanLogBuilder {
             let rays = rays(&scan, &params.map);
             let walls = matcher.wall_points(&scan, way);
             log.squares.entry(square(&pose)).or_default().push(log.scans.len());
-            log.scans.push(LoggedScan { number, scan, hash, odometry, pose, way, rays, walls });
+            log.scans.push(LoggedScan {
+                number,
+                scan,
+                hash,
+                odometry,
+                pose,
+                way,
+                rays,
+                walls,
+                keyframe: 0,
+                passes: OnceLock::new(),
+            });
         }
+        log.choose_keyframes();
         log
     }
 }
@@ -229,39 +266,52 @@ impl ScanLog {
         from_robot(&Odometry { heading: pose.heading + scan.direction_of_walls(), ..*pose })
     }
 
-    fn local_view<'a>(&'a self, view: usize, with_facts: bool) -> (LocalView, Option<PlaceFacts>) {
+    /// The local map of a view by the scans of its own pass.
+    fn own_map(
+        &self,
+        view: usize,
+        map_from_log: &Isometry2<f64>,
+    ) -> (RayCounts, Vec<PlacedScan<'_>>) {
         let params = &self.params.map;
-        let here = &self.scans[view];
-        let map_from_log = self.log_from_map(view).inverse();
-        let side = params.window();
-        let robot = Point2::origin();
         // What several views agree on must not depend on how the walls lie in the cells.
-        let corner = Vector2::repeat(if here.hash.is_multiple_of(2) { 0.0 } else { 0.5 });
-        let mut counts = RayCounts::around(robot, side + 2, params.cell, corner);
-        // The scans are in the order of the robot's way.
-        let first = self.scans.partition_point(|scan| here.way - scan.way > params.memory);
-        let end = self.scans.partition_point(|scan| scan.way - here.way <= params.memory);
-        let own = &self.scans[first..end];
-        let mut placed: Vec<PlacedScan<'_>> =
-            own.iter().map(|scan| scan.placed(&map_from_log)).collect();
+        let corner = if self.scans[view].hash.is_multiple_of(2) { 0.0 } else { 0.5 };
+        let (side, corner) = (params.window() + 2, Vector2::repeat(corner));
+        let mut counts = RayCounts::around(Point2::origin(), side, params.cell, corner);
+        let own = self.scans[self.own_pass(view)].iter();
+        let placed: Vec<PlacedScan<'_>> = own.map(|scan| scan.placed(map_from_log)).collect();
         for scan in &placed {
             counts.add(scan.rays, &scan.map_from_robot);
         }
-        // Passes are compared with what this one shows, and not with each other.
-        let (sure, unsure) = self.agreeing_passes(here, own, &counts, &map_from_log);
-        let add = |counts: &mut RayCounts, placed: &mut Vec<_>, passes: Vec<PlacedScan<'a>>| {
-            for scan in &passes {
-                counts.add(scan.rays, &scan.map_from_robot);
+        (counts, placed)
+    }
+
+    fn local_view(&self, view: usize, with_facts: bool) -> (LocalView, Option<PlaceFacts>) {
+        let params = &self.params.map;
+        let map_from_log = self.log_from_map(view).inverse();
+        let (mut counts, mut placed) = self.own_map(view, &map_from_log);
+        let (own, keyframe) = (self.own_pass(view), self.scans[view].keyframe);
+        let (sure, unsure): (Vec<&Pass>, Vec<&Pass>) =
+            self.passes(keyframe).iter().partition(|pass| pass.is_sure);
+        let is_split = !unsure.is_empty();
+        let add = |counts: &mut RayCounts, placed: &mut Vec<_>, passes: Vec<&Pass>| {
+            for Pass { scans, correction, .. } in passes {
+                let map_from_log = map_from_log * correction;
+                // Some may be of another pass for the keyframe, and of this one here.
+                let others = scans.iter().filter(|scan| !own.contains(scan));
+                let others = others.map(|&scan| self.scans[scan].placed(&map_from_log));
+                for scan in others {
+                    counts.add(scan.rays, &scan.map_from_robot);
+                    placed.push(scan);
+                }
             }
-            placed.extend(passes);
         };
         let local = |counts: &RayCounts, placed: &[PlacedScan<'_>]| {
-            let grid = counts.window(robot, side, params);
+            let robot = Point2::origin();
+            let grid = counts.window(robot, params.window(), params);
             let (viewpoints, driven) =
                 placed.iter().map(|scan| (scan.viewpoint.clone(), scan.robot())).unzip();
             LocalWays::new(grid, LocalScans { robot, viewpoints, driven, params: &self.params })
         };
-        let is_split = !unsure.is_empty();
         add(&mut counts, &mut placed, sure);
         // Facts are those of passes that lie on each other beyond doubt.
         let facts = (with_facts && is_split).then(|| local(&counts, &placed).facts());
@@ -271,90 +321,121 @@ impl ScanLog {
         (ways.view(), facts)
     }
 
-    /// The scans of other passes that agree with what a pass shows: those that do beyond doubt, and others.
-    fn agreeing_passes<'a>(
-        &'a self,
-        here: &LoggedScan,
-        own: &[LoggedScan],
-        counts: &RayCounts,
-        map_from_log: &Isometry2<f64>,
-    ) -> (Vec<PlacedScan<'a>>, Vec<PlacedScan<'a>>) {
-        let (mut sure, mut unsure) = (Vec::new(), Vec::new());
-        let passes = self.other_passes(here);
+    /// The scans of the pass of a view that are in its local map.
+    fn own_pass(&self, view: usize) -> Range<usize> {
+        // The scans are in the order of the robot's way.
+        self.along_way(self.scans[view].way, self.params.map.memory)
+    }
+
+    /// The scans that are at most so far from a place along the robot's way.
+    fn along_way(&self, way: f64, within: f64) -> Range<usize> {
+        let first = self.scans.partition_point(|scan| way - scan.way > within);
+        first..self.scans.partition_point(|scan| scan.way - way <= within)
+    }
+
+    /// Gives each scan the nearest keyframe along the way.
+    fn choose_keyframes(&mut self) {
+        let rank = |scan: usize| (self.scans[scan].hash, scan);
+        let is_keyframe = |&scan: &usize| {
+            let near = self.along_way(self.scans[scan].way, KEYFRAME);
+            near.map(rank).min() == Some(rank(scan))
+        };
+        let keyframes: Vec<usize> = (0..self.scans.len()).filter(is_keyframe).collect();
+        for scan in 0..self.scans.len() {
+            let way = self.scans[scan].way;
+            let after = keyframes.partition_point(|&keyframe| keyframe < scan);
+            let away = |keyframe: usize| (self.scans[keyframe].way - way).abs();
+            let beside = keyframes[after.saturating_sub(1)..].iter().take(2);
+            let nearest = beside.min_by(|&&one, &&other| away(one).total_cmp(&away(other)));
+            self.scans[scan].keyframe = nearest.copied().unwrap_or(scan);
+        }
+    }
+
+    /// The other passes that agree with the pass of a keyframe.
+    fn passes(&self, keyframe: usize) -> &[Pass] {
+        self.scans[keyframe].passes.get_or_init(|| self.agreeing_passes(keyframe))
+    }
+
+    fn agreeing_passes(&self, keyframe: usize) -> Vec<Pass> {
+        let passes = self.other_passes(&self.scans[keyframe]);
         if passes.is_empty() {
-            return (sure, unsure);
+            return Vec::new();
         }
         let LaserParams { map, matching, .. } = &self.params;
         let least = if matching.rounds > 0 { AGREES_IN_DRIFT } else { AGREES };
-        let on_map = |scan: &LoggedScan| moved(map_from_log, &scan.pose);
-        let own_pass = OwnPass::new(counts, map);
+        let log_from_map = self.log_from_map(keyframe);
+        let map_from_log = log_from_map.inverse();
+        let (counts, _) = self.own_map(keyframe, &map_from_log);
+        // Passes are compared with what this one shows, and not with each other.
+        let own_pass = OwnPass::new(&counts, map);
+        let on_map = |scan: usize| moved(&map_from_log, &self.scans[scan].pose);
         let walls = LazyCell::new(|| {
-            let own = apart(own);
-            own_walls(own.into_iter().map(|scan| (&scan.walls[..], on_map(scan))), matching)
+            let own = self.apart(self.own_pass(keyframe));
+            let walls = own.into_iter().map(|scan| (&self.scans[scan].walls[..], on_map(scan)));
+            own_walls(walls, matching)
         });
-        for pass in passes {
-            let on = |map_from_log: &Isometry2<f64>| -> (Vec<PlacedScan<'_>>, Vec<[i64; 2]>) {
-                let placed: Vec<_> = pass.iter().map(|scan| scan.placed(map_from_log)).collect();
-                let hits =
-                    own_pass.hits(placed.iter().map(|scan| (scan.rays, scan.map_from_robot)));
-                (placed, hits)
+        let mut agreeing = Vec::new();
+        for scans in passes {
+            let hits = |map_from_log: &Isometry2<f64>| -> Vec<[i64; 2]> {
+                let placed = scans.iter().map(|&scan| &self.scans[scan]);
+                let motion = |scan: &LoggedScan| from_robot(&moved(map_from_log, &scan.pose));
+                own_pass.hits(placed.map(|scan| (&scan.rays, motion(scan))))
             };
-            let (mut placed, mut hits) = on(map_from_log);
-            if own_pass.part_on_walls(&hits).is_none_or(|part| part < AGREES_WELL) {
-                let points = pass.iter().flat_map(|scan| {
+            let (mut correction, mut on_walls) = (Isometry2::identity(), hits(&map_from_log));
+            if own_pass.part_on_walls(&on_walls).is_none_or(|part| part < AGREES_WELL) {
+                let points = scans.iter().flat_map(|&scan| {
                     let map_from_robot = from_robot(&on_map(scan));
-                    scan.walls.iter().map(move |wall| wall.moved(&map_from_robot))
+                    self.scans[scan].walls.iter().map(move |wall| wall.moved(&map_from_robot))
                 });
-                (placed, hits) = on(&(own_pass.correction(&walls, points) * map_from_log));
+                let moved = own_pass.correction(&walls, points) * map_from_log;
+                (correction, on_walls) = (log_from_map * moved, hits(&moved));
             }
-            match own_pass.widest_astray(&hits, least) {
-                Some(widest) if widest < map.min_width => sure.extend(placed),
-                Some(_) => unsure.extend(placed),
-                None => {}
+            if let Some(widest) = own_pass.widest_astray(&on_walls, least) {
+                agreeing.push(Pass { scans, correction, is_sure: widest < map.min_width });
             }
         }
-        (sure, unsure)
+        agreeing
     }
 
     /// The scans of other passes within the reach of a local map, the nearest pass along the way first: for each pass the
     /// scans without those that are close behind another one.
-    fn other_passes(&self, here: &LoggedScan) -> Vec<Vec<&LoggedScan>> {
+    fn other_passes(&self, here: &LoggedScan) -> Vec<Vec<usize>> {
         let LocalMapParams { reach, memory, .. } = self.params.map;
         let steps = (reach / SQUARE).ceil() as i64;
         let [column, row] = square(&here.pose);
         let squares = (-steps..=steps)
             .flat_map(move |x| (-steps..=steps).map(move |y| [column + x, row + y]));
-        let is_other = |other: &LoggedScan| {
-            (other.way - here.way).abs() > memory && other.pose.distance(&here.pose) <= reach
+        let away = |scan: usize| (self.scans[scan].way - here.way).abs();
+        let is_other = |&scan: &usize| {
+            away(scan) > memory && self.scans[scan].pose.distance(&here.pose) <= reach
         };
         let mut near: Vec<usize> = squares
             .filter_map(|square| self.squares.get(&square))
             .flatten()
             .copied()
-            .filter(|&index| is_other(&self.scans[index]))
+            .filter(is_other)
             .collect();
         near.sort_unstable();
         let passes = near.chunk_by(|one, next| next - one == 1);
-        let pass = |indices: &[usize]| apart(indices.iter().map(|&index| &self.scans[index]));
-        let mut passes: Vec<Vec<&LoggedScan>> = passes.map(pass).collect();
-        let away = |pass: &[&LoggedScan]| {
-            pass.iter().map(|scan| (scan.way - here.way).abs()).fold(f64::MAX, f64::min)
-        };
-        passes.sort_by(|one, other| away(one).total_cmp(&away(other)));
+        let mut passes: Vec<Vec<usize>> =
+            passes.map(|pass| self.apart(pass.iter().copied())).collect();
+        let nearest = |pass: &[usize]| pass.iter().map(|&scan| away(scan)).fold(f64::MAX, f64::min);
+        passes.sort_by(|one, other| nearest(one).total_cmp(&nearest(other)));
         passes.truncate(PASSES);
         passes
     }
-}
 
-/// The scans of a pass without those that are close behind another one.
-fn apart<'a>(pass: impl IntoIterator<Item = &'a LoggedScan>) -> Vec<&'a LoggedScan> {
-    let mut some: Vec<&LoggedScan> = Vec::new();
-    for scan in pass {
-        if some.last().is_none_or(|last| scan.way - last.way >= APART) {
-            some.push(scan);
+    /// The scans of a pass without those that are close behind another one.
+    fn apart(&self, pass: impl IntoIterator<Item = usize>) -> Vec<usize> {
+        let mut some: Vec<usize> = Vec::new();
+        for scan in pass {
+            let behind = |&last: &usize| self.scans[scan].way - self.scans[last].way;
+            if some.last().is_none_or(|last| behind(last) >= APART) {
+                some.push(scan);
+            }
         }
+        some
     }
-    some
 }
 
 fn square(pose: &Odometry) -> [i64; 2] {
