@@ -1,13 +1,16 @@
 //! How a robot in corridors drives: along its way, back, and around.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::Point2;
-use toposlam_logs::record::RunObserver;
+use toposlam_logs::record::{Frame, RunObserver};
 use toposlam_model::{driving::scene::wrapped, percept::Sighting};
 use toposlam_vision::{
     geometry::{direction, distance, unit},
-    laser::navigation::{LineEnd, WayAhead, WayChoice, along},
+    laser::{
+        navigation::{LineEnd, WayAhead, WayChoice, along},
+        scan::Reading,
+    },
     place::SeenPlace,
 };
 
@@ -292,6 +295,9 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             let closer = straight();
             if left_of(&closer).is_some_and(|left| left > self.driving.look_closer) {
                 way = closer;
+            } else if !self.scanner.sees_arms && self.is_silent(towards) {
+                let line = vec![robot, robot + look_ahead * unit(towards)];
+                way = WayAhead { line, end: LineEnd::Unknown };
             }
         }
         let Some(target) = along(&way.line, look_ahead) else { return Ok(Some(NoWay::Unseen)) };
@@ -318,6 +324,23 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             direction(before, self.at())
         };
         Ok(None)
+    }
+
+    /// Whether a scanner that does not see far has no return from a direction on the local map, and the robot has room there: it
+    /// is perhaps in a lobby that is wider than the range.
+    fn is_silent(&self, towards: f64) -> bool {
+        let Some(Frame { odometry, scan: Some(scan), .. }) = &self.last else { return false };
+        let ahead = odometry.seen(wrapped(towards + self.turn_of_map()));
+        let (along, across) = (unit(ahead), unit(ahead + FRAC_PI_2));
+        let reach = self.driving.look_ahead + self.driving.before_wall;
+        let is_in_way = |hit: Point2<f64>| {
+            (0.0..reach).contains(&hit.coords.dot(&along))
+                && hit.coords.dot(&across).abs() < self.driving.room
+        };
+        let is_ahead = |bearing: f64| wrapped(bearing - ahead).abs() < self.driving.silent;
+        let mut readings = scan.readings();
+        readings.any(|(bearing, reading)| reading == Reading::NoReturn && is_ahead(bearing))
+            && !scan.hits().any(is_in_way)
     }
 
     /// Whether a robot that is stopped where its map shows nothing, as by glass, passes a little beside it.

@@ -299,7 +299,7 @@ impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
 
     /// Looks for the marker, and goes on with the walks that agree. The next walk begins at the marker.
     fn recover_from_here(&mut self) -> Mapped<W> {
-        let (known, _) = self.walks.fold_most(0);
+        let (known, _) = self.walks.fold_most(&FoldedTrail::default(), 0);
         let seen = match self.exploration.find_marker(known, &mut self.world) {
             Err(error @ MappingError::Contradiction(Contradiction::NoMarker)) => {
                 return Err(self.failed(error));
@@ -310,9 +310,13 @@ impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
         self.keep_walk();
         self.world.walk = EarlierWalk::new(seen, [], false);
         self.world.measured.push(ArrivalMeasurement::default());
-        let (trail, kept) = match self.walks.fold_most(1) {
-            folded if folded.0.marker().is_some() => folded,
-            _ => (FoldedTrail::new(seen)?, 0),
+        let folded = self.walks.fold_most(&FoldedTrail::default(), 1);
+        let degree = folded.0.marker().map(|marker| folded.0.degree(marker));
+        // The robot may have seen the marker without another move.
+        let (trail, kept) = if degree == Some(seen.degree) {
+            folded
+        } else {
+            self.walks.fold_most(&FoldedTrail::new(seen)?, 0)
         };
         let event = SafeguardEvent::MarkerFound { kept, walks: self.walks.len() };
         self.exploration.resume((trail, event), seen, &mut self.world)

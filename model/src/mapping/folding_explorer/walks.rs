@@ -148,10 +148,13 @@ impl EarlierWalks {
         self.0.retain(|walk| !walk.is_blocked);
     }
 
-    /// Folds as many walks as agree, and returns the trail and their number. The suspect comes last.
-    fn fold_newest_first(&self, suspect: Option<usize>) -> (FoldedTrail, usize) {
+    /// Adds as many walks as agree to a trail, and returns it and their number. The suspect comes last.
+    fn fold_newest_first(
+        &self,
+        mut trail: FoldedTrail,
+        suspect: Option<usize>,
+    ) -> (FoldedTrail, usize) {
         let others = (0..self.len()).rev().filter(|&at| Some(at) != suspect);
-        let mut trail = FoldedTrail::default();
         let mut kept = 0;
         for at in others.chain(suspect) {
             let mut more = trail.clone();
@@ -164,13 +167,13 @@ impl EarlierWalks {
     }
 
     /// Folds the largest set of walks that agree, of those that are found with each walk as the suspect. Of sets
-    /// of the same size it is the one with the newest suspect. The `sure` newest walks are no suspects. Returns
-    /// the number of walks, too.
-    pub(super) fn fold_most(&self, sure: usize) -> (FoldedTrail, usize) {
+    /// of the same size it is the one with the newest suspect. The `sure` newest walks are no suspects. They are added
+    /// to a trail that is sure. Returns the number of walks, too.
+    pub(super) fn fold_most(&self, trail: &FoldedTrail, sure: usize) -> (FoldedTrail, usize) {
         let suspects = (0..self.len().saturating_sub(sure)).rev().map(Some);
-        let mut best = (FoldedTrail::default(), 0);
+        let mut best = (trail.clone(), 0);
         for suspect in suspects.chain([None]) {
-            let folded = self.fold_newest_first(suspect);
+            let folded = self.fold_newest_first(trail.clone(), suspect);
             if folded.1 > best.1 {
                 best = folded;
             }

@@ -16,7 +16,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{ExploredMap, FACING, MappingError, MappingMethod},
+    mapping::{ExploredMap, FACING, Flaw, MappingError, MappingMethod},
 };
 use toposlam_robot::{
     corridors::CorridorExplorer, explorer::ExplorerError, run_settings::RunSettings,
@@ -143,30 +143,68 @@ impl WalkSampler {
             .as_ref()
             .map_or((mapping.moves(), 0), |mapped| (mapped.moves, mapped.recoveries));
         let blocked = mapped.as_ref().map_or(0, |mapped| mapped.blocked.len());
-        let outcome = match mapped {
-            Err(MappingError::World(ExplorerError::Stopped { .. })) => return None,
-            Err(error) => RobotOutcome::GaveUp(error.to_string()),
-            Ok(mapped) => {
+        let world = (&smoothed.graph, facing);
+        let outcome = match (mapped, mapping.map().complete()) {
+            (Err(MappingError::World(ExplorerError::Stopped { .. })), _) => return None,
+            (Err(error), _) => RobotOutcome::GaveUp(error.to_string()),
+            (Ok(_), None) => RobotOutcome::GaveUp("the map is not complete".to_owned()),
+            (Ok(mapped), Some(map)) if blocked > 0 => {
+                if is_right_but_for(&mapped.blocked, (map, mapped.pose), world, judge.truth) {
+                    RobotOutcome::GaveUp(format!(
+                        "the map is right but for {blocked} blocked doors"
+                    ))
+                } else {
+                    RobotOutcome::Wrong(Flaw::WrongMap.to_string())
+                }
+            }
+            (Ok(mapped), Some(map)) => {
                 // A robot at no junction is not at its pose in the map.
                 let truly = judge.truth.unwrap_or(Dart(u32::MAX));
-                match mapping.map().complete() {
-                    None => RobotOutcome::GaveUp("the map is not complete".to_owned()),
-                    Some(map) => {
-                        let graph = Cow::Borrowed(map);
-                        let map = ExploredMap { graph, facing: FACING, pose: mapped.pose };
-                        let mut candidate = Candidate::default();
-                        let world = (&smoothed.graph, facing);
-                        match judge_map(&map, world, truly, &mut candidate) {
-                            Ok(_) => RobotOutcome::Right,
-                            Err(flaw) => RobotOutcome::Wrong(flaw.to_string()),
-                        }
-                    }
+                let graph = Cow::Borrowed(map);
+                let map = ExploredMap { graph, facing: FACING, pose: mapped.pose };
+                match judge_map(&map, world, truly, &mut Candidate::default()) {
+                    Ok(_) => RobotOutcome::Right,
+                    Err(flaw) => RobotOutcome::Wrong(flaw.to_string()),
                 }
             }
         };
         let tally = judge.tally;
         Some((ScannedRun { number, moves, way, recoveries, tally, outcome }, blocked))
     }
+}
+
+/// Whether a map and its pose are those of a world, but for what lies behind doors that are blocked. The robot truly came in by
+/// a dart of the world, if it is at a junction.
+fn is_right_but_for(
+    blocked: &[Dart],
+    (map, pose): (&EmbeddedGraph, Dart),
+    (world, facing): (&EmbeddedGraph, Dart),
+    truly: Option<Dart>,
+) -> bool {
+    // The dart at the obstacle to which a blocked door leads.
+    let is_obstacle = |dart: Dart| blocked.contains(&map.opposite(dart));
+    let mut images: Vec<Option<Dart>> = vec![None; map.dart_count()];
+    let mut open = vec![(FACING, facing)];
+    while let Some((dart, image)) = open.pop() {
+        match images[dart.at()] {
+            Some(known) if known == image => continue,
+            Some(_) => return false,
+            None => images[dart.at()] = Some(image),
+        }
+        open.push((map.opposite(dart), world.opposite(image)));
+        if !is_obstacle(dart) {
+            if map.degree_around(dart) != world.degree_around(image) {
+                return false;
+            }
+            open.push((map.clockwise(dart), world.clockwise(image)));
+        }
+    }
+    let seen: Vec<Dart> = map.darts().filter(|dart| !is_obstacle(*dart)).collect();
+    let mut taken: Vec<Option<Dart>> = seen.iter().map(|dart| images[dart.at()]).collect();
+    taken.sort();
+    taken.dedup();
+    let is_at_pose = is_obstacle(pose) || images[pose.at()] == truly;
+    taken.len() == seen.len() && is_at_pose
 }
 
 #[cfg(test)]
@@ -247,6 +285,48 @@ mod tests {
         let recovering = MappingMethod::Recovering(RecoveryConfig::default());
         let (run, blocked) = sampler.run_by(0, recovering, &mut (), block).unwrap();
         assert!(blocked > 0 || matches!(run.outcome, RobotOutcome::GaveUp(_)), "{run:?}");
+    }
+
+    /// In this building some lobbies are wider than the range: from the corridor nothing is seen behind their entrance.
+    #[test]
+    fn a_lobby_whose_far_side_is_out_of_range_is_no_end() {
+        let scanner = ScannerParams::named("lds-01");
+        let sampler = WalkSampler { scanner, ..sampler(BuildingKind::Mixed, 5) };
+        let recovering = MappingMethod::Recovering(RecoveryConfig::default());
+        let run = sampler.run(24, recovering, &()).unwrap();
+        assert_eq!((&run.outcome, run.tally.wrong), (&RobotOutcome::Right, 0), "{run:?}");
+    }
+
+    /// Three corridors from one junction to another one.
+    #[test]
+    fn a_map_with_blocked_doors_is_right_if_the_rest_is() {
+        let corridors = |there: [&'static str; 3]| {
+            let lists = [("here", vec!["e", "f", "g"]), ("there", there.to_vec())];
+            EmbeddedGraph::from_edge_lists(&lists).unwrap()
+        };
+        let (theta, on_torus) = (corridors(["e", "g", "f"]), corridors(["e", "f", "g"]));
+        let facing = Dart(0);
+        for cut in [1, 2].map(Dart) {
+            let (map, numbers) = theta.cut(&[cut], facing);
+            let blocked: Vec<Dart> =
+                [cut, theta.opposite(cut)].iter().filter_map(|dart| numbers[dart.at()]).collect();
+            assert_eq!((numbers[0], blocked.len()), (Some(FACING), 2));
+            let right = |world, pose, truly| {
+                is_right_but_for(&blocked, (&map, pose), (world, facing), truly)
+            };
+            let pose = numbers[3].unwrap();
+            assert!(right(&theta, pose, Some(Dart(3))));
+            // Before the obstacle the robot is at no junction.
+            assert!(right(&theta, map.opposite(blocked[0]), None));
+            assert!(!right(&theta, pose, Some(Dart(4))) && !right(&theta, pose, None));
+            assert!(!right(&on_torus, pose, Some(Dart(3))));
+            assert!(!is_right_but_for(
+                &blocked[..1],
+                (&map, pose),
+                (&theta, facing),
+                Some(Dart(3))
+            ));
+        }
     }
 
     /// Beside a corridor something looks like an arm, and when the robot drives into it, it turns back into the corridor.
