@@ -20,7 +20,8 @@ use super::{
     messages::{Hypothesis, Run, Stamp},
     reader::Log,
     reading_remark::{ReadingRemark, Unusable},
-    scan_convention::{self, ScanRepairs},
+    scan_convention::ScanRepairs,
+    scan_survey,
     sensor_data::{self, image_of},
     topic::Encoding,
     topic_map::{BoundTopicMap, Carried, MessagePart, Role},
@@ -88,9 +89,7 @@ impl Log {
             odometry: Odometry::default(),
             next: VecDeque::new(),
             unusable: Unusable::default(),
-            repairs: ScanRepairs::new(
-                scans.and_then(|topic| scan_convention::of_topic(self, topic)),
-            ),
+            repairs: ScanRepairs::new(scans.and_then(|topic| scan_survey::of_topic(self, topic))),
         }
     }
 }

@@ -27,6 +27,7 @@ pub mod record;
 pub mod recorder;
 pub mod rosbag2;
 mod scan_convention;
+mod scan_survey;
 mod sensor_data;
 mod skipped_lines;
 mod source;

@@ -63,7 +63,7 @@ impl RangeHistogram {
         let Some(ranges) = scan.at("ranges").and_then(|ranges| ranges.elements()) else { return };
         self.range_max = range_max;
         self.bins.resize((BINS * BELOW.max(range_max - BEYOND)) as usize, 0);
-        for range in ranges.iter().filter_map(|range| range.f64()) {
+        for range in ranges.iter().filter_map(Value::f64) {
             self.all += 1;
             if range.is_nan() {
                 self.not_numbers += 1;
