@@ -31,7 +31,7 @@ const BELOW: f64 = 1.0;
 const BEYOND: f64 = 40.0;
 /// The bins of a metre.
 const BINS: f64 = 100.0;
-/// No scanner has a larger range, in metres.
+/// So many metres are looked at: a driver may state a range of 1e30 m.
 const FARTHEST: f64 = 1000.0;
 /// They lie within so many bins.
 const WIDTH: usize = 6;
@@ -57,12 +57,12 @@ impl RangeHistogram {
     /// Adds the readings of a scan.
     pub(super) fn add(&mut self, scan: &Value<'_>) {
         let range_max = ["range_max", "maximum_range"].into_iter().find_map(|name| scan.get(name));
-        let Some(range_max) = range_max.filter(|range| (BELOW..FARTHEST).contains(range)) else {
-            return;
-        };
+        let Some(range_max) = range_max else { return };
         let Some(ranges) = scan.at("ranges").and_then(|ranges| ranges.elements()) else { return };
         self.range_max = range_max;
-        self.bins.resize((BINS * BELOW.max(range_max - BEYOND)) as usize, 0);
+        let far = (range_max - BEYOND).min(FARTHEST);
+        let bins = BINS * far.max(BELOW.min(range_max / 2.0));
+        self.bins.resize(self.bins.len().max(bins as usize), 0);
         for range in ranges.iter().filter_map(Value::f64) {
             self.all += 1;
             if range.is_nan() {

@@ -216,17 +216,17 @@ fn a_scanner_sees_nothing_at_a_range_below_the_one_that_its_driver_states() {
         )
     };
     for (kind, tail) in [("RAWLASER1", ""), ("ROBOTLASER1", "0 0 0 0 0 0 0 0 0 0 0 ")] {
-        for (none, walls, readings) in [
-            ("50", "49.5", [Reading::Hit(1.5), Reading::Hit(49.5), Reading::NoReturn]),
-            ("81.91", "60", [Reading::Hit(1.5), Reading::Hit(60.0), Reading::NoReturn]),
-        ] {
+        for (none, range, wall) in [("50", 50.0, 49.5), ("81.91", 81.91, 60.0)] {
             let one = line(kind, &format!("1.5 2.5 {none}"), tail);
-            let text = one.repeat(60) + &line(kind, &format!("1.5 {walls} {none}"), tail);
+            let text = one.repeat(60) + &line(kind, &format!("1.5 {wall} {none}"), tail);
             let log = Log::of_bytes(text.into()).unwrap();
             let read = scans(&log);
             let (_, _, scan) = read.last().unwrap();
             let last: Vec<_> = scan.readings().map(|(_, reading)| reading).collect();
-            assert_eq!(last, readings, "{kind} {none}");
+            assert_eq!(last, [Reading::Hit(1.5), Reading::Hit(wall), Reading::NoReturn], "{kind}");
+            // The bin of a centimetre in which the sign is.
+            let range_max = scan.geometry().range_max;
+            assert!((range - 0.011..=range).contains(&range_max), "{kind}: {range_max}");
         }
     }
 }

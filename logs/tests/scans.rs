@@ -166,6 +166,17 @@ fn odometry_of_another_frame_is_that_of_the_robot() {
 }
 
 #[test]
+fn what_a_range_of_0_means_is_known_whatever_range_the_driver_states() {
+    for most in [0.5, 10.0, 1000.0, 1e30, f32::INFINITY] {
+        let ranges = [&[0.25][..], &[0.0; 10]].concat();
+        let found = readings(&[scan([-1.0, 0.125, 0.1, most], &ranges)]);
+        let found: Vec<Reading> = found.into_iter().map(|(_, reading)| reading).collect();
+        let expected = [&[Reading::Hit(0.25)][..], &[Reading::NoReturn; 10]].concat();
+        assert_eq!(found, expected, "{most}");
+    }
+}
+
+#[test]
 fn impossible_angles_and_limits_are_errors_and_a_clockwise_scan_is_reversed() {
     for (numbers, ranges, message) in [
         ([-1.0, 0.0, 0.1, 10.0], &[1.0][..], "the angle increment of the scan is 0"),

@@ -7,7 +7,7 @@ use toposlam_model::{
     folding::ContradictionReason,
     mapping::{
         Algorithm1Run, Contradiction, Explorer, FoldingRun, MappingAlgorithm, MappingError,
-        MovableMarkerRun, ObservedWorld, explore,
+        MappingMethod, MovableMarkerRun, ObservedWorld, RecoveryConfig, Relocate, explore,
     },
     percept::{Door, DoorSet, MarkerSet, OtherRobot, Percept, Sighting, StringView, TeamView},
     world::{AidHandler, GraphWorld, World},
@@ -63,6 +63,8 @@ impl AidHandler for ScriptedWorld<'_> {
         self.refused.filter(refused).map_or(Ok(()), Err)
     }
 }
+
+impl Relocate for ScriptedWorld<'_> {}
 
 fn run<E: Explorer + Default>(percepts: &[Percept], bound: usize) -> Result<(), Error> {
     let mut explorer = E::default();
@@ -294,6 +296,26 @@ proptest! {
         // Also one that never lies about the marker while the robot carries it or looks for it in vain.
         let degrees = sensed(lying(2), |degree, number| plain(1 + (degree + number) % 3));
         let _ = run::<MovableMarkerRun>(&degrees, BOUND);
+    }
+}
+
+proptest! {
+    /// What it perceived earlier and what it perceives now may contradict each other in any way.
+    #[test]
+    fn a_robot_that_recovers_has_a_next_step_until_its_map_is_complete(
+        percepts in proptest::collection::vec((0..4_u32, 0..8_u32), 1..60),
+    ) {
+        // The door along which a marker points may not be there.
+        let percept = |(degree, number): (u32, u32)| match number % 2 {
+            0 => marked(degree, number / 2),
+            _ => plain(degree),
+        };
+        let others = percepts.into_iter().map(percept);
+        let percepts: Vec<_> = std::iter::once(marked(2, 0)).chain(others).collect();
+        let mut world = ScriptedWorld { percepts: &percepts, moves: 0, refused: None };
+        let method = MappingMethod::Recovering(RecoveryConfig::default());
+        let (_, mapped) = method.map_world(&mut world, BOUND, &[], &mut ());
+        prop_assert!(!matches!(mapped, Err(MappingError::InvalidStep(_))), "{mapped:?}");
     }
 }
 

@@ -326,8 +326,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         Ok(None)
     }
 
-    /// Whether a scanner that does not see far has no return from a direction on the local map, and the robot has room there: it
-    /// is perhaps in a lobby that is wider than the range.
+    /// Whether nothing comes back from a direction on the local map, and nothing else is in the way there: what is ahead may
+    /// be farther than a short range, as in a lobby.
     fn is_silent(&self, towards: f64) -> bool {
         let Some(Frame { odometry, scan: Some(scan), .. }) = &self.last else { return false };
         let ahead = odometry.seen(wrapped(towards + self.turn_of_map()));

@@ -98,7 +98,7 @@ params! {
         turned: f64 = 1.0,
         /// A way that is known for less than this has ended.
         at_end: f64 = 0.3,
-        /// A scanner that does not see far has no return from ahead if it has none from so near to that direction.
+        /// Nothing comes back from ahead if a reading this near to that direction has no return.
         silent: f64 = 0.05,
         /// A robot without a way drives straight on up to this far from a wall.
         before_wall: f64 = 0.4,

@@ -46,6 +46,8 @@ pub struct ScanLog {
     scans: Vec<LoggedScan>,
     /// The scans that were taken in a square, by its column and row.
     squares: BTreeMap<[i64; 2], Vec<usize>>,
+    /// In the order of the scans.
+    keyframes: Vec<Keyframe>,
 }
 
 #[derive(Clone, Debug)]
@@ -63,9 +65,14 @@ struct LoggedScan {
     rays: Rays,
     /// In the robot's frame.
     walls: Vec<WallPoint>,
-    /// The index of its keyframe.
-    keyframe: usize,
-    /// If it is a keyframe: the other passes by its place, once they are asked for.
+}
+
+/// A scan at which other passes are looked for.
+#[derive(Clone, Debug)]
+struct Keyframe {
+    /// The index of the scan.
+    scan: usize,
+    /// The other passes that agree with its own one, once they are asked for.
     passes: OnceLock<Vec<Pass>>,
 }
 
@@ -117,7 +124,7 @@ const AGREES_WELL: f64 = 0.95;
 const APART: f64 = 0.9;
 /// The number of other passes that a map may have: the nearest ones along the way.
 const PASSES: usize = 12;
-/// The hash of a keyframe is less than that of all scans this near along the way, in metres. Geometry: a corridor's width.
+/// A scan is a keyframe if its hash is the least of those within this length of the way, in metres. Geometry: a corridor's width.
 const KEYFRAME: f64 = 2.0;
 
 /// Takes the scans of a log. It keeps only those that are used, and the last ones.
@@ -163,7 +170,8 @@ impl ScanLogBuilder {
                 from_robot(&Odometry { heading, ..*odometry }).inverse()
             });
         let mut matcher = ScanMatcher::new(params.matching);
-        let mut log = ScanLog { params, drift, scans: Vec::new(), squares: BTreeMap::new() };
+        let (squares, keyframes) = (BTreeMap::new(), Vec::new());
+        let mut log = ScanLog { params, drift, scans: Vec::new(), squares, keyframes };
         let mut way = 0.0;
         for ChosenScan { number, scan, odometry, hash } in chosen {
             way += log.scans.last().map_or(0.0, |last| in_steps(last.odometry.distance(&odometry)));
@@ -172,20 +180,9 @@ impl ScanLogBuilder {
             let rays = rays(&scan, &params.map);
             let walls = matcher.wall_points(&scan, way);
             log.squares.entry(square(&pose)).or_default().push(log.scans.len());
-            log.scans.push(LoggedScan {
-                number,
-                scan,
-                hash,
-                odometry,
-                pose,
-                way,
-                rays,
-                walls,
-                keyframe: 0,
-                passes: OnceLock::new(),
-            });
+            log.scans.push(LoggedScan { number, scan, hash, odometry, pose, way, rays, walls });
         }
-        log.choose_keyframes();
+        log.keyframes = log.chosen_keyframes();
         log
     }
 }
@@ -289,9 +286,9 @@ impl ScanLog {
         let params = &self.params.map;
         let map_from_log = self.log_from_map(view).inverse();
         let (mut counts, mut placed) = self.own_map(view, &map_from_log);
-        let (own, keyframe) = (self.own_pass(view), self.scans[view].keyframe);
+        let own = self.own_pass(view);
         let (sure, unsure): (Vec<&Pass>, Vec<&Pass>) =
-            self.passes(keyframe).iter().partition(|pass| pass.is_sure);
+            self.passes_beside(view).iter().partition(|pass| pass.is_sure);
         let is_split = !unsure.is_empty();
         let add = |counts: &mut RayCounts, placed: &mut Vec<_>, passes: Vec<&Pass>| {
             for Pass { scans, correction, .. } in passes {
@@ -333,27 +330,26 @@ impl ScanLog {
         first..self.scans.partition_point(|scan| scan.way - way <= within)
     }
 
-    /// Gives each scan the nearest keyframe along the way.
-    fn choose_keyframes(&mut self) {
+    fn chosen_keyframes(&self) -> Vec<Keyframe> {
         let rank = |scan: usize| (self.scans[scan].hash, scan);
-        let is_keyframe = |&scan: &usize| {
+        let is_least = |&scan: &usize| {
             let near = self.along_way(self.scans[scan].way, KEYFRAME);
             near.map(rank).min() == Some(rank(scan))
         };
-        let keyframes: Vec<usize> = (0..self.scans.len()).filter(is_keyframe).collect();
-        for scan in 0..self.scans.len() {
-            let way = self.scans[scan].way;
-            let after = keyframes.partition_point(|&keyframe| keyframe < scan);
-            let away = |keyframe: usize| (self.scans[keyframe].way - way).abs();
-            let beside = keyframes[after.saturating_sub(1)..].iter().take(2);
-            let nearest = beside.min_by(|&&one, &&other| away(one).total_cmp(&away(other)));
-            self.scans[scan].keyframe = nearest.copied().unwrap_or(scan);
-        }
+        let chosen = (0..self.scans.len()).filter(is_least);
+        chosen.map(|scan| Keyframe { scan, passes: OnceLock::new() }).collect()
     }
 
-    /// The other passes that agree with the pass of a keyframe.
-    fn passes(&self, keyframe: usize) -> &[Pass] {
-        self.scans[keyframe].passes.get_or_init(|| self.agreeing_passes(keyframe))
+    /// The other passes that agree with the pass of the nearest keyframe along the way.
+    fn passes_beside(&self, view: usize) -> &[Pass] {
+        let way = |scan: usize| self.scans[scan].way;
+        let away = |keyframe: &Keyframe| (way(keyframe.scan) - way(view)).abs();
+        let after = self.keyframes.partition_point(|keyframe| keyframe.scan < view);
+        let beside = self.keyframes[after.saturating_sub(1)..].iter().take(2);
+        let nearest = beside.min_by(|one, other| away(one).total_cmp(&away(other)));
+        nearest.map_or(&[], |Keyframe { scan, passes }| {
+            passes.get_or_init(|| self.agreeing_passes(*scan))
+        })
     }
 
     fn agreeing_passes(&self, keyframe: usize) -> Vec<Pass> {

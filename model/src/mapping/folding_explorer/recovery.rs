@@ -312,7 +312,7 @@ impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
         self.world.measured.push(ArrivalMeasurement::default());
         let folded = self.walks.fold_most(&FoldedTrail::default(), 1);
         let degree = folded.0.marker().map(|marker| folded.0.degree(marker));
-        // The robot may have seen the marker without another move.
+        // If the robot sees the marker where it begins to look, no walk ends with what it sees.
         let (trail, kept) = if degree == Some(seen.degree) {
             folded
         } else {

@@ -167,8 +167,8 @@ impl EarlierWalks {
     }
 
     /// Folds the largest set of walks that agree, of those that are found with each walk as the suspect. Of sets
-    /// of the same size it is the one with the newest suspect. The `sure` newest walks are no suspects. They are added
-    /// to a trail that is sure. Returns the number of walks, too.
+    /// of the same size it is the one with the newest suspect. The `sure` newest walks are no suspects, and all agree
+    /// with the given trail. Returns the number of walks, too.
     pub(super) fn fold_most(&self, trail: &FoldedTrail, sure: usize) -> (FoldedTrail, usize) {
         let suspects = (0..self.len().saturating_sub(sure)).rev().map(Some);
         let mut best = (trail.clone(), 0);

@@ -51,8 +51,8 @@ use toposlam_simulator::{
 /// In a whole run the folding explorer maps the building by what the robot derives, right or wrong. Where the robot
 /// may be at a junction it turns around, and drives into each arm of which it does not see enough: one that it cannot
 /// follow for 10 m is none. A pilot keeps it on the floor, and a detector of its own reports the marker. A run is right if
-/// the map and the pose are, and wrong if the robot does not notice that they are not; otherwise it gave up. With
-/// --recover it goes on after a contradiction.
+/// the map and the pose are, and wrong if the robot does not notice that they are not; otherwise it gave up, also if
+/// the map is right but for blocked doors. With --recover it goes on after a contradiction.
 ///
 /// Without --scanner, the usual scanner covers 360 and 180 degrees in turn.
 ///

@@ -1,6 +1,6 @@
 //! A whole run by laser: a robot maps a random building by its scans alone. Corners are no vertices.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, collections::BTreeSet};
 
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -12,10 +12,11 @@ use toposlam_logs::{
 };
 use toposlam_model::{
     check::judge_map,
+    counts::counted,
     driving::pose::Pose,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
-    isomorphism::Candidate,
+    isomorphism::{Bijection, Candidate},
     mapping::{ExploredMap, FACING, Flaw, MappingError, MappingMethod},
 };
 use toposlam_robot::{
@@ -150,9 +151,8 @@ impl WalkSampler {
             (Ok(_), None) => RobotOutcome::GaveUp("the map is not complete".to_owned()),
             (Ok(mapped), Some(map)) if blocked > 0 => {
                 if is_right_but_for(&mapped.blocked, (map, mapped.pose), world, judge.truth) {
-                    RobotOutcome::GaveUp(format!(
-                        "the map is right but for {blocked} blocked doors"
-                    ))
+                    let doors = counted(blocked, "blocked door");
+                    RobotOutcome::GaveUp(format!("the map is right but for {doors}"))
                 } else {
                     RobotOutcome::Wrong(Flaw::WrongMap.to_string())
                 }
@@ -181,30 +181,20 @@ fn is_right_but_for(
     (world, facing): (&EmbeddedGraph, Dart),
     truly: Option<Dart>,
 ) -> bool {
-    // The dart at the obstacle to which a blocked door leads.
-    let is_obstacle = |dart: Dart| blocked.contains(&map.opposite(dart));
-    let mut images: Vec<Option<Dart>> = vec![None; map.dart_count()];
-    let mut open = vec![(FACING, facing)];
-    while let Some((dart, image)) = open.pop() {
-        match images[dart.at()] {
-            Some(known) if known == image => continue,
-            Some(_) => return false,
-            None => images[dart.at()] = Some(image),
-        }
-        open.push((map.opposite(dart), world.opposite(image)));
-        if !is_obstacle(dart) {
-            if map.degree_around(dart) != world.degree_around(image) {
-                return false;
-            }
-            open.push((map.clockwise(dart), world.clockwise(image)));
-        }
-    }
-    let seen: Vec<Dart> = map.darts().filter(|dart| !is_obstacle(*dart)).collect();
-    let mut taken: Vec<Option<Dart>> = seen.iter().map(|dart| images[dart.at()]).collect();
-    taken.sort();
-    taken.dedup();
-    let is_at_pose = is_obstacle(pose) || images[pose.at()] == truly;
-    taken.len() == seen.len() && is_at_pose
+    let candidate = Bijection::of_starts((map, FACING), (world, facing));
+    let image = |dart: Dart| candidate.images()[dart.at()];
+    // An obstacle is a dead end of the map, and may be anywhere along the edge.
+    let is_seen = |dart: &Dart| !blocked.contains(&map.opposite(*dart));
+    let seen: Vec<Dart> = map.darts().filter(is_seen).collect();
+    let is_like_its_image = |&dart: &Dart| {
+        let there = image(dart);
+        image(map.opposite(dart)) == world.opposite(there)
+            && image(map.clockwise(dart)) == world.clockwise(there)
+            && map.degree_around(dart) == world.degree_around(there)
+    };
+    let images: BTreeSet<Dart> = seen.iter().map(|dart| image(*dart)).collect();
+    let is_at_pose = !is_seen(&pose) || Some(image(pose)) == truly;
+    seen.iter().all(is_like_its_image) && images.len() == seen.len() && is_at_pose
 }
 
 #[cfg(test)]
