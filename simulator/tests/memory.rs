@@ -47,6 +47,9 @@ fn no_frame_takes_more_memory_than_the_frames_before_it() {
     let building = Building::new(&plan_named("shape-8").unwrap(), look, None, &effects, 1);
     let images = POSES.map(|pose| render(&rig, &building, pose, &effects, 1));
     let mut sensor = Sensor::new(&camera, &colours);
-    let first = taken(&mut sensor, &images, 1);
-    assert_eq!(taken(&mut sensor, &images, 33), first);
+    let (kept, peak) = taken(&mut sensor, &images, 1);
+    let (kept_after_more, peak_of_more) = taken(&mut sensor, &images, 33);
+    // The thread that waits for the test may take a little memory meanwhile.
+    assert!(kept_after_more <= kept + 2048, "{kept} {kept_after_more}");
+    assert!(peak_of_more <= peak + 2048, "{peak} {peak_of_more}");
 }

@@ -16,9 +16,11 @@ pub(crate) fn peak(run: impl FnOnce()) -> usize {
     MEMORY.peak_usage().saturating_sub(before)
 }
 
-/// The allocator is measured.
+/// The allocator is measured. The thread that waits for the test may take a little memory meanwhile.
 pub(crate) fn assert_measured() {
-    assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1000)))), 1000);
+    let (taken, besides) = (1 << 20, 4096);
+    let measured = peak(|| drop(black_box(Vec::<u8>::with_capacity(taken))));
+    assert!((taken - besides..=taken + besides).contains(&measured), "{measured}");
 }
 
 /// A reader, and what it documents: so many bytes of memory for each byte, and so many besides.

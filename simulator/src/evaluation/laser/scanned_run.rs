@@ -189,7 +189,6 @@ fn is_right_but_for(
     let is_like_its_image = |&dart: &Dart| {
         let there = image(dart);
         image(map.opposite(dart)) == world.opposite(there)
-            && image(map.clockwise(dart)) == world.clockwise(there)
             && map.degree_around(dart) == world.degree_around(there)
     };
     let images: BTreeSet<Dart> = seen.iter().map(|dart| image(*dart)).collect();
@@ -310,13 +309,23 @@ mod tests {
             assert!(right(&theta, map.opposite(blocked[0]), None));
             assert!(!right(&theta, pose, Some(Dart(4))) && !right(&theta, pose, None));
             assert!(!right(&on_torus, pose, Some(Dart(3))));
-            assert!(!is_right_but_for(
-                &blocked[..1],
-                (&map, pose),
-                (&theta, facing),
-                Some(Dart(3))
-            ));
+            let less =
+                is_right_but_for(&blocked[..1], (&map, pose), (&theta, facing), Some(Dart(3)));
+            assert!(!less);
         }
+        // A dead end is no junction with three doors.
+        let corridor = EmbeddedGraph::chain(1);
+        let start = Some(facing);
+        assert!(!is_right_but_for(&[facing], (&corridor, FACING), (&theta, facing), start));
+        // A ring of four corridors is none of two, though each of its junctions looks as one of those.
+        let (ring, four) = (EmbeddedGraph::cycle(2), EmbeddedGraph::cycle(4));
+        let (map, numbers) = four.cut(&[Dart(4)], facing);
+        let blocked: Vec<Dart> = [Dart(4), four.opposite(Dart(4))]
+            .iter()
+            .filter_map(|dart| numbers[dart.at()])
+            .collect();
+        assert!(is_right_but_for(&blocked, (&map, FACING), (&four, facing), start));
+        assert!(!is_right_but_for(&blocked, (&map, FACING), (&ring, facing), start));
     }
 
     /// Beside a corridor something looks like an arm, and when the robot drives into it, it turns back into the corridor.

@@ -269,6 +269,33 @@ fn a_pass_through_other_walls_or_far_away_is_not_of_the_same_place() {
 }
 
 #[test]
+fn a_pass_beside_another_one_is_laid_on_its_walls() {
+    let walls = tee();
+    // West to east, and back: the odometry lays the way back half a metre to the north.
+    let there = (-40..=40).map(|step| (pose(0.3 * f64::from(step), 0.0, 0.0), 0.0));
+    let back = (-40..=40).map(|step| (pose(-0.3 * f64::from(step), 0.0, PI), 0.5));
+    let scans = there.chain(back).map(|(there, north)| {
+        let [x, y] = there.position;
+        let odometry = pose(x, y + north, there.heading);
+        (std::sync::Arc::new(walls.scan(&there, -180, 360)), odometry)
+    });
+    let log = ScanLog::new(scans, LaserParams::default());
+    let mut count = 0;
+    for view in (0..log.len()).filter(|&view| log.scan(view) <= 80) {
+        let seen = log.view(view, false);
+        let [x, _] = seen.robot.position;
+        if x.abs() < 8.0 {
+            count += 1;
+            let wall = log.sight(view, Point2::new(x, 0.0), -FRAC_PI_2, 5.0);
+            assert!((wall - 1.0).abs() < 0.2, "{x}: {wall}");
+            let facts = log.view(view, true).facts.unwrap();
+            assert_eq!(facts.not_ended.len(), 1, "{x}");
+        }
+    }
+    assert!(count > 10, "{count}");
+}
+
+#[test]
 fn where_odometry_drifts_scans_are_placed_by_their_walls() {
     let walls = tee();
     let legs = [
