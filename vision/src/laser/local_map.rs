@@ -106,7 +106,8 @@ impl<'a> LocalWays<'a> {
 
 /// The rays of a scan.
 pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
-    let mut rays = Rays { from: scan.scanner(), ..Rays::default() };
+    let mut rays = Rays::default();
+    let from = scan.scanner();
     let readings: Vec<(f64, Option<f64>)> = scan.ranges_hit().collect();
     // Nothing beyond is on the map while the scan is remembered.
     let farthest = 2.0 * params.reach + params.memory;
@@ -125,17 +126,19 @@ pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
     };
     for (index, &(bearing, range)) in readings.iter().enumerate() {
         let Some(range) = range else { continue };
+        let point = |range| scan.point(bearing, range);
+        rays.free.push([from, point(range.min(farthest))]);
         if range > farthest {
-            rays.between.push(scan.point(bearing, farthest));
             continue;
         }
-        rays.hits.push(scan.point(bearing, range));
+        rays.hits.push(point(range));
         let Some((at, step, other)) = next(index) else { continue };
-        // Rays closer than cells, up to where the map ends.
+        // Rays closer than cells, from where these two are a cell apart, up to where the map ends.
+        let (apart, latest) = (params.cell / step.abs(), range.min(other).min(farthest));
         let parts = (step.abs() * params.reach / params.cell).ceil() as u32;
-        for part in 1..parts {
+        for part in (1..parts).take_while(|_| apart < latest) {
             let bearing = bearing + step * f64::from(part) / f64::from(parts);
-            rays.between.push(scan.point(bearing, range.min(other).min(farthest)));
+            rays.free.push([apart, latest].map(|range| scan.point(bearing, range)));
         }
         if at != index + 1 {
             continue;
@@ -144,8 +147,7 @@ pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
         let [Some(before), Some(one), Some(two), Some(after)] = four else { continue };
         let gap = distance(one, two);
         let on_line = |line: [Point2<f64>; 2], towards: Point2<f64>, range: f64| {
-            met(rays.from, towards, line)
-                .is_some_and(|met| (met - range).abs() < 0.3 * gap.max(0.3))
+            met(from, towards, line).is_some_and(|met| (met - range).abs() < 0.3 * gap.max(0.3))
         };
         let is_straight = on_line([before, one], two, other) || on_line([after, two], one, range);
         if (params.cell..=params.bridge).contains(&gap) && is_straight {

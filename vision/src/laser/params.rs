@@ -108,7 +108,7 @@ params! {
         /// The same length in a log: a scan is used if none is that is nearer. Geometry: half of a corridor.
         logged_every: f64 = 0.8,
         /// A cell is an obstacle if at least this part of the rays that reached it ended there. Logs.
-        occupied: f64 = 0.2,
+        occupied: f64 = 0.18,
         /// Two neighbouring rays end on one wall if their ends are nearer to each other than this, and on a line with a
         /// third. Geometry: along a corridor rays meet its walls far apart.
         bridge: f64 = 3.0,

@@ -10,11 +10,10 @@ use super::{
 /// The rays of one scan, in metres in the robot's frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rays {
-    pub from: Point2<f64>,
     /// Where rays ended at an obstacle.
     pub hits: Vec<Point2<f64>>,
-    /// Where rays between two neighbours would have ended at the latest.
-    pub between: Vec<Point2<f64>>,
+    /// Where rays passed, up to the cell of the end.
+    pub free: Vec<[Point2<f64>; 2]>,
     /// Straight pieces of wall between the ends of neighbouring rays.
     pub walls: Vec<[Point2<f64>; 2]>,
 }
@@ -72,24 +71,24 @@ impl RayCounts {
     fn count(&mut self, rays: &Rays, map_from_robot: &Isometry2<f64>, more: i32) {
         let side = self.side;
         let place = self.place_from(map_from_robot);
-        let from = place(rays.from);
-        for (ends, is_hit) in [(&rays.hits, true), (&rays.between, false)] {
-            // All lines before the first is drawn: a processor guesses wrong where a line ends, and then waits for the next.
-            let line = |&end: &Point2<f64>| {
-                let end = place(end);
-                (Line::new(side, [from, end], 0), index_of(side, cell_at(end)))
-            };
-            let lines: Vec<(Line, Option<usize>)> = ends.iter().map(line).collect();
-            for (line, last) in lines {
-                let before = last.map(|last| self.passes[last]);
-                line.for_cells(side, |at, is_new| {
-                    self.passes[at] += if is_new { more } else { 0 };
-                });
-                // A ray does not pass the cell in which it ends.
-                if let Some((last, before)) = last.zip(before) {
-                    self.passes[last] = before;
-                    self.hits[last] += if is_hit { more } else { 0 };
-                }
+        // All lines before the first is drawn: a processor guesses wrong where a line ends, and then waits for the next.
+        let line = |ends: &[Point2<f64>; 2]| {
+            let ends = ends.map(&place);
+            (Line::new(side, ends, 0), index_of(side, cell_at(ends[1])))
+        };
+        let lines: Vec<(Line, Option<usize>)> = rays.free.iter().map(line).collect();
+        for (line, last) in lines {
+            let before = last.map(|last| self.passes[last]);
+            line.for_cells(side, |at, is_new| {
+                self.passes[at] += if is_new { more } else { 0 };
+            });
+            if let Some((last, before)) = last.zip(before) {
+                self.passes[last] = before;
+            }
+        }
+        for &hit in &rays.hits {
+            if let Some(at) = index_of(side, cell_at(place(hit))) {
+                self.hits[at] += more;
             }
         }
         for ends in &rays.walls {

@@ -1,6 +1,6 @@
 //! `evaluate laser`: compares junctions that are sensed with a laser scanner with the truth.
 
-use std::io::Write;
+use std::{io::Write, ops::Range};
 
 use clap::ValueEnum;
 use serde_json::{Map, json};
@@ -71,6 +71,7 @@ Examples:
   evaluate laser --scanner lds-01         another scanner
   evaluate laser --walks 0 --recover --failed failed
   evaluate laser --walk 17                each visit of one walk
+  evaluate laser --run 17 --recover       one whole run
 
 A target is met if the 95 % interval of the rate is within it, missed if the \
 interval is beyond it, and otherwise not shown: the sample is too small.",
@@ -110,6 +111,9 @@ pub(super) struct EvaluateLaserArguments {
     /// Measure only the walk with this number, and print each of its visits
     #[arg(long, value_name = "N", conflicts_with_all = ["walks", "runs", "traversals"])]
     walk: Option<u64>,
+    /// Measure only the whole run with this number
+    #[arg(long, value_name = "N", conflicts_with_all = ["walk", "walks", "runs", "traversals"])]
+    run: Option<u64>,
     #[command(flatten)]
     failed: FailedOption,
     #[command(flatten)]
@@ -133,16 +137,20 @@ impl EvaluateLaserArguments {
             scanner,
             sensing: LaserParams::default(),
         };
-        let (numbers, [runs, traversals]) = match self.walk {
-            Some(walk) => (walk..walk.saturating_add(1), [0, 0]),
-            None => (0..self.walks, [self.runs, self.traversals]),
+        let one = |number: u64| number..number.saturating_add(1);
+        let (walk_numbers, run_numbers, traversals) = match (self.walk, self.run) {
+            (Some(walk), _) => (one(walk), 0..0, 0),
+            (None, Some(run)) => (0..0, one(run), 0),
+            (None, None) => (0..self.walks, 0..self.runs, self.traversals),
         };
-        let wanted = numbers.end - numbers.start + runs + traversals;
+        let count = |numbers: &Range<u64>| numbers.end - numbers.start;
+        let wanted = count(&walk_numbers) + count(&run_numbers) + traversals;
         let method = self.safeguards.folding();
         let walks =
-            measure("walks", "walks", numbers, |number, watch| sampler.walk(number, watch))?;
-        let runs =
-            measure("runs", "runs", 0..runs, |number, watch| sampler.run(number, method, watch))?;
+            measure("walks", "walks", walk_numbers, |number, watch| sampler.walk(number, watch))?;
+        let runs = measure("runs", "runs", run_numbers, |number, watch| {
+            sampler.run(number, method, watch)
+        })?;
         let traversals = self.driven(traversals, scanner.unwrap_or_default())?;
         let measured = walks.len() + runs.len() + traversals.len();
         let is_interrupted = (measured as u64) < wanted;
@@ -236,7 +244,7 @@ impl EvaluateLaserArguments {
         let name = format!("building-{}-{number}", self.seed);
         let buildings = self.buildings.to_possible_value()?;
         let mut words = vec![
-            format!("evaluate laser --walks 0 --traversals 0 --runs {}", number + 1),
+            format!("evaluate laser --run {number}"),
             format!("--seed {} --buildings {}", self.seed, buildings.get_name()),
             format!("--drift {}", self.drift),
         ];

@@ -16,7 +16,8 @@ fn counts() -> RayCounts {
 
 /// A ray from one point that hits another.
 fn hit(from: [f64; 2], to: [f64; 2]) -> Rays {
-    Rays { from: from.into(), hits: vec![to.into()], ..Rays::default() }
+    let [from, to] = [from, to].map(Point2::from);
+    Rays { hits: vec![to], free: vec![[from, to]], ..Rays::default() }
 }
 
 fn add(counts: &mut RayCounts, rays: &Rays) {
@@ -47,8 +48,8 @@ fn cells_up_to_a_hit_are_free_and_the_hit_is_occupied() {
 #[test]
 fn a_ray_that_would_have_ended_at_the_latest_somewhere_hits_nothing() {
     let mut counts = counts();
-    let between = vec![[0.5, -3.5].into()];
-    add(&mut counts, &Rays { from: [0.5, 0.5].into(), between, ..Rays::default() });
+    let free = vec![[[0.5, 0.5], [0.5, -3.5]].map(Point2::from)];
+    add(&mut counts, &Rays { free, ..Rays::default() });
     // The cell of its end is not passed.
     assert_eq!(rows(&seen(&counts)), ["   ", " . ", " . ", " . ", " . ", "   "]);
 }
@@ -97,7 +98,7 @@ fn a_cell_is_occupied_if_a_fifth_of_the_rays_that_reach_it_end_there() {
 fn a_piece_of_wall_is_occupied_between_its_ends() {
     let mut counts = counts();
     let wall = [[-3.5, 2.5], [3.5, 2.5]].map(Point2::from);
-    add(&mut counts, &Rays { from: [0.5, 0.5].into(), walls: vec![wall], ..Rays::default() });
+    add(&mut counts, &Rays { walls: vec![wall], ..Rays::default() });
     // The rays that ended at its ends are counted by themselves.
     assert_eq!(rows(&seen(&counts))[1], " ###### ");
 }
@@ -149,9 +150,8 @@ fn rays_begin_and_end_where_the_motion_takes_them() {
     // A quarter turn to the left, and 3 m east.
     let quarter = Isometry2::new(Vector2::new(3.0, 0.0), std::f64::consts::FRAC_PI_2);
     let rays = Rays {
-        from: [0.5, -0.5].into(),
         hits: vec![[3.5, -0.5].into()],
-        between: vec![[0.5, 2.5].into()],
+        free: [[3.5, -0.5], [0.5, 2.5]].map(|to| [[0.5, -0.5], to].map(Point2::from)).to_vec(),
         walls: vec![[[-4.5, -0.5], [-4.5, 3.5]].map(Point2::from)],
     };
     let mut counts = counts();

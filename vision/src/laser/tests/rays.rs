@@ -11,6 +11,7 @@ use crate::{
     laser::{
         local_map::{is_near_origin, rays},
         params::LocalMapParams,
+        ray_counts::Rays,
         scan::{Scan, ScanGeometry},
     },
 };
@@ -41,7 +42,6 @@ fn a_scan_in_a_room_of_6_m_by_4_m_reads_the_distances_of_its_walls() {
 fn the_rays_of_a_scan_end_on_the_walls_of_the_room() {
     let robot = Odometry { position: [2.0, 1.0], heading: 2.0 };
     let rays = rays(&room().scan(&robot, -180, 360), &LocalMapParams::default());
-    assert!(distance(rays.from, [0.0, 0.0]) < 1e-9);
     assert_eq!(rays.hits.len(), 360);
     for hit in &rays.hits {
         let hit = from_robot(&robot) * hit;
@@ -49,9 +49,12 @@ fn the_rays_of_a_scan_end_on_the_walls_of_the_room() {
             [hit.x, 6.0 - hit.x, hit.y, 4.0 - hit.y].into_iter().fold(f64::INFINITY, f64::min);
         assert!(off.abs() < 1e-5, "{hit}");
     }
-    // A degree is 1.9 cells of 0.15 m wide where the map ends, 16 m away: there is one ray between any two readings.
-    assert_eq!(rays.between.len(), 360);
-    // The far corner is 5 m away, where a degree is 9 cm across. Neighbouring ends are farther apart than a cell only on walls
+    // Where the map ends, 16 m away, a degree is 1.9 cells of 0.15 m wide, but a cell 8.6 m away, and the far corner is 5 m away.
+    assert_eq!((rays.free.len(), between(&rays)), (360, Vec::new()));
+    for ([from, end], hit) in rays.free.iter().zip(&rays.hits) {
+        assert!(from.coords.norm() < 1e-9 && distance(*end, *hit) < 1e-9);
+    }
+    // Neighbouring ends are farther apart than a cell only on walls
     // that rays meet at a small angle.
     assert!(rays.walls.iter().all(|[one, other]| distance(*one, *other) >= 0.15));
 }
@@ -68,6 +71,12 @@ fn the_ends_of_neighbouring_rays_on_one_wall_are_a_piece_of_it_if_they_are_a_cel
     // From 4 to 20 degrees, in four directions.
     assert_eq!(rays.walls.len(), 4 * 16);
     assert!(rays.walls.iter().flatten().all(|end| (end.y.abs() - 1.0).abs() < 1e-5));
+}
+
+/// Where rays that were not measured begin and end, between others, as the distances from the scanner.
+fn between(rays: &Rays) -> Vec<[f64; 2]> {
+    let ends = rays.free.iter().map(|ends| ends.map(|end| end.coords.norm()));
+    ends.filter(|[from, _]| *from > 1e-9).collect()
 }
 
 /// A scan with a reading each degree from 0 on.
@@ -93,11 +102,17 @@ fn readings_without_a_return_show_free_space_if_they_are_few() {
     // 0.1 radians are 5.7 degrees: four readings leave a gap of 5 degrees.
     let few = silent(4);
     assert_eq!(few.hits.len(), 6);
-    // At 16 m, where the map ends, a degree is 1.9 cells wide, and 5 degrees 9.3 cells.
-    assert_eq!(few.between.len(), 4 + 9);
-    let nearest = few.between.iter().filter(|end| near(end.coords.norm(), 8.0)).count();
-    assert_eq!(nearest, 2 + 9, "up to the nearer one");
-    assert_eq!(silent(5).between.len(), 4, "a gap of 6 degrees shows nothing");
+    // At 16 m, where the map ends, a degree is 1.9 cells wide, and 5 degrees 9.3 cells. They are a cell wide 8.59 m and
+    // 1.72 m away.
+    let few = between(&few);
+    let from_to = |[from, to]: [f64; 2]| {
+        few.iter().filter(|ends| near(ends[0], from) && near(ends[1], to)).count()
+    };
+    let degree = 1_f64.to_radians();
+    assert_eq!(few.len(), 2 + 9);
+    assert_eq!(from_to([0.15 / degree, 10.0]), 2);
+    assert_eq!(from_to([0.15 / (5.0 * degree), 8.0]), 9, "up to the nearer one");
+    assert_eq!(between(&silent(5)).len(), 2, "a gap of 6 degrees shows nothing");
 }
 
 #[test]
@@ -106,7 +121,7 @@ fn what_is_farther_than_a_map_reaches_while_its_scan_is_remembered_is_no_hit() {
     let rays = rays(&readings(&[49.9, 50.1]), &LocalMapParams::default());
     assert_eq!(rays.hits.len(), 1);
     assert!((rays.hits[0].coords.norm() - 49.9).abs() < 1e-5);
-    let far: Vec<f64> = rays.between.iter().map(|end| end.coords.norm()).collect();
+    let far: Vec<f64> = rays.free.iter().map(|[_, end]| end.coords.norm()).collect();
     assert!(far.iter().any(|far| near(*far, 50.0)), "{far:?}");
     assert!(far.iter().all(|far| *far < 50.0 + 1e-9));
 }
@@ -119,8 +134,9 @@ fn the_scanner_of_a_robot_may_lie_beside_its_middle() {
     let scan =
         Scan::new(geometry, vec![2.0], Isometry2::new([0.3, 0.0].into(), FRAC_PI_2)).unwrap();
     let rays = rays(&scan, &LocalMapParams::default());
-    assert!(distance(rays.from, [0.3, 0.0]) < 1e-9, "{}", rays.from);
-    assert!(distance(rays.hits[0], [0.3, 2.0]) < 1e-9, "{}", rays.hits[0]);
+    let [from, end] = rays.free[0];
+    assert!(distance(from, [0.3, 0.0]) < 1e-9, "{from}");
+    assert!(distance(end, [0.3, 2.0]) < 1e-9 && distance(rays.hits[0], end) < 1e-9, "{end}");
 }
 
 #[test]

@@ -284,7 +284,8 @@ fn a_pass_beside_another_one_is_laid_on_its_walls() {
     for view in (0..log.len()).filter(|&view| log.scan(view) <= 80) {
         let seen = log.view(view, false);
         let [x, _] = seen.robot.position;
-        if x.abs() < 8.0 {
+        // The map of a view holds the scans of its own pass up to 18 m before and after it: here, the robot had not turned back.
+        if (-8.0..-3.0).contains(&x) {
             count += 1;
             let wall = log.sight(view, Point2::new(x, 0.0), -FRAC_PI_2, 5.0);
             assert!((wall - 1.0).abs() < 0.2, "{x}: {wall}");
@@ -292,7 +293,7 @@ fn a_pass_beside_another_one_is_laid_on_its_walls() {
             assert_eq!(facts.not_ended.len(), 1, "{x}");
         }
     }
-    assert!(count > 10, "{count}");
+    assert!(count >= 5, "{count}");
 }
 
 #[test]
