@@ -124,10 +124,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             let certain = seen.iter().filter(|arm| arm.is_certain).map(|arm| arm.direction);
             if let Some(arm) = doubted.next(certain, least_doors) {
                 let (driven, is_arm) = self.look_into(arm, false)?;
-                // If it turned into another way, nothing is known of this one.
-                let is_there = self.driving.is_same_arm(driven, arm);
-                let is_arm = is_arm.filter(|_| is_there).ok_or(CorridorFailure::Undecided)?;
-                doubted.decide(arm, is_arm);
+                doubted.decide(arm, driven, is_arm)?;
                 continue;
             }
             let is_undecided = place.arms.iter().any(|arm| arm.certainty == Certainty::Possible);
@@ -183,7 +180,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     /// Drives into an arm and back. Returns the direction in which it drove, and whether it could drive as far as makes an
     /// arm. If the place is to be seen from nearby only, what is seen from farther away is forgotten.
     fn look_into(&mut self, towards: f64, from_nearby: bool) -> Result<(f64, IsArm), Stop> {
-        let (first, begin) = (self.trail.len(), self.at());
+        let (first, begin, felt) = (self.trail.len(), self.at(), self.felt.len());
         if from_nearby {
             let visits = self.visits.clone();
             self.side_trip = Some(SideTrip { from: begin, visits, near: Vec::new() });
@@ -217,6 +214,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                     self.odometry_from_map = view.odometry_from_map;
                 }
             }
+            self.remember_walls(felt);
         }
         self.look_around()?;
         // It may have gone through the middle of the place first.
@@ -320,11 +318,21 @@ impl<'d> DoubtedArms<'d> {
         }
     }
 
-    fn decide(&mut self, direction: f64, is_arm: bool) {
+    /// The robot has looked for an arm, and drove in the second direction. If it turned into another way, nothing is known of
+    /// this one.
+    fn decide(
+        &mut self,
+        direction: f64,
+        driven: f64,
+        is_arm: IsArm,
+    ) -> Result<(), CorridorFailure> {
         let Self { driving, arms, .. } = self;
+        let is_arm = is_arm.filter(|_| driving.is_same_arm(driven, direction));
+        let is_arm = is_arm.ok_or(CorridorFailure::Undecided)?;
         if let Some(arm) = arms.iter_mut().find(|arm| driving.is_same_arm(arm.0, direction)) {
             arm.1 = Some(is_arm);
         }
+        Ok(())
     }
 
     /// Whether the robot has driven into an arm.
@@ -421,20 +429,32 @@ mod tests {
         doubted.add([1.5, -1.4, -3.1].into_iter());
         assert_eq!(doubted.next([-1.5].into_iter(), 3), Some(1.5), "the other one is certain");
         assert_eq!(doubted.next([0.0].into_iter(), 5), None, "there are at most four doors");
-        doubted.decide(1.5, true);
+        doubted.decide(1.5, 1.6, Some(true)).unwrap();
         doubted.add([1.3].into_iter());
         assert_eq!(doubted.next(none(), 3), Some(-1.4), "no view shows any of them now");
-        doubted.decide(-1.4, true);
+        doubted.decide(-1.4, -1.4, Some(true)).unwrap();
         assert_eq!(doubted.next(none(), 3), None);
         assert_eq!(doubted.doors(Vec::new()), [1.5, -1.4, PI], "it came in somewhere, too");
         assert_eq!(doubted.doors(vec![3.0, 1.6]), [3.0, 1.6, -1.4]);
     }
 
     #[test]
+    fn an_arm_is_undecided_if_the_robot_turned_into_another_way_or_could_not_go_on() {
+        let mut doubted = DoubtedArms::new(PI, &CorridorParams::DEFAULT);
+        doubted.add([1.5].into_iter());
+        for (driven, is_arm) in [(0.2, Some(true)), (0.2, Some(false)), (1.5, None)] {
+            let decided = doubted.decide(1.5, driven, is_arm);
+            assert_eq!(decided, Err(CorridorFailure::Undecided), "{driven} {is_arm:?}");
+        }
+        assert!(!doubted.is_decided());
+        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(1.5));
+    }
+
+    #[test]
     fn what_is_no_arm_is_no_door_and_the_last_one_in_doubt_may_not_matter() {
         let mut doubted = DoubtedArms::new(PI, &CorridorParams::DEFAULT);
         doubted.add([1.5, -1.4].into_iter());
-        doubted.decide(1.5, false);
+        doubted.decide(1.5, 1.5, Some(false)).unwrap();
         assert_eq!(doubted.next([].into_iter(), 3), None, "two doors are no junction");
         assert_eq!(doubted.next([].into_iter(), 2), Some(-1.4), "but perhaps a corner");
         assert_eq!(doubted.next([0.0].into_iter(), 3), Some(-1.4));

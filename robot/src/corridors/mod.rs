@@ -11,6 +11,7 @@ mod junction;
 mod marking;
 mod motion;
 mod params;
+mod touch;
 mod trail;
 
 use std::{
@@ -48,6 +49,7 @@ use crate::{
 };
 use marking::Sought;
 use params::CorridorParams;
+use touch::Felt;
 use trail::Trail;
 
 /// A robot that explores a network of corridors. Directions are those of the frame of odometry.
@@ -80,6 +82,8 @@ pub struct CorridorExplorer<R, O = ()> {
     is_at_opening: bool,
     /// What it has seen on a side trip while it was near the place where that began.
     side_trip: Option<SideTrip>,
+    /// Where it felt for walls that it does not see, since its last place: pieces of wall, or of what is free.
+    felt: Vec<Felt>,
     sought: Sought,
     /// The marker, or the other robot of the team, where it was seen last.
     marker: Option<SeenMarker>,
@@ -174,6 +178,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             looked: None,
             is_at_opening: false,
             side_trip: None,
+            felt: Vec::new(),
             sought: Sought::default(),
             marker: None,
             place: None,

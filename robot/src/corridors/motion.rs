@@ -85,6 +85,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     /// Drives away in a direction until it is at a junction or a dead end.
     pub(super) fn drive(&mut self, towards: f64) -> Result<(), Stop> {
         (self.place, self.is_blocked) = (None, false);
+        self.felt.clear();
         if self.trail.is_empty() {
             self.sense()?;
             self.look_around()?;
@@ -195,7 +196,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
 
     /// The direction to where it was when it was last this far from here. Its heading may be that of a short way to look at
     /// something.
-    fn back(&self, far: f64) -> f64 {
+    pub(super) fn back(&self, far: f64) -> f64 {
         let at = self.at();
         let before = self.trail.before_entering(at, far);
         before.map_or(wrapped(self.heading + PI), |before| direction(at, before))
@@ -303,10 +304,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         let Some(target) = along(&way.line, look_ahead) else { return Ok(Some(NoWay::Unseen)) };
         let left = distance(robot, target);
         if left < self.driving.at_end {
-            return Ok(Some(match way.end {
-                LineEnd::Wall(beyond) => NoWay::Wall(left + beyond),
-                LineEnd::Unknown => NoWay::Unseen,
-            }));
+            return match way.end {
+                LineEnd::Wall(beyond) => Ok(Some(NoWay::Wall(left + beyond))),
+                LineEnd::Unknown => Ok((!self.feels_for_wall()?).then_some(NoWay::Unseen)),
+            };
         }
         let beyond = along(&way.line, 2.0 * look_ahead).unwrap_or(target);
         let (target, beyond) = (self.odometry_from_map * target, self.odometry_from_map * beyond);
@@ -357,7 +358,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
     }
 
     /// Turns to a point, goes up to a step towards it, and takes a scan.
-    fn step_to(&mut self, point: Point2<f64>) -> Result<(), Stop> {
+    pub(super) fn step_to(&mut self, point: Point2<f64>) -> Result<(), Stop> {
         let at = self.odometry();
         let length = distance(at.position, point);
         if length < 1e-3 {

@@ -104,6 +104,16 @@ params! {
         before_wall: f64 = 0.4,
         /// A robot that has driven less than this in a step was stopped.
         stuck: f64 = 0.05,
+        /// A wall that it does not see stops it this near, ...
+        touch: f64 = 0.5,
+        /// ... and is known for this length to each side of its middle: the robot's radius.
+        felt: f64 = 0.25,
+        /// It feels for walls at most this often from place to place.
+        feels: usize = 12,
+        /// A way may go on through a gap that is at least this wide, ...
+        gap: f64 = 0.4,
+        /// ... and that does not lie in the direction of the way back.
+        not_back: f64 = 0.5,
         /// Then it tries so many directions to each side of its way, ...
         beside: usize = 3,
         /// ... each this far from the one before.

@@ -57,6 +57,36 @@ impl Grid {
         self.origin + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell
     }
 
+    /// Takes a piece of wall that stopped a robot here: its cells are occupied, and those between it and the robot are free if
+    /// nothing is known of them. Cells on the border stay unknown.
+    pub(super) fn build(&mut self, robot: Point2<f64>, [one, other]: [Point2<f64>; 2]) {
+        let on_wall = self.along(one, other);
+        for &at in &on_wall {
+            for cell in self.along(robot, self.point(at)) {
+                if self.cells[cell] == Cell::Unknown {
+                    self.cells[cell] = Cell::Free;
+                }
+            }
+        }
+        for at in on_wall {
+            self.cells[at] = Cell::Occupied;
+        }
+    }
+
+    /// The cells along a straight line, without those on the border.
+    fn along(&self, from: Point2<f64>, to: Point2<f64>) -> Vec<usize> {
+        let steps = (4.0 * distance(&from, &to) / self.cell).ceil().max(1.0) as u32;
+        let points =
+            (0..=steps).map(|step| from + f64::from(step) / f64::from(steps) * (to - from));
+        let cell = |point| {
+            let [column, row] = self.column_row(point);
+            let is_within = |at: i64, count: usize| (1..count as i64 - 1).contains(&at);
+            (is_within(column, self.columns) && is_within(row, self.rows()))
+                .then(|| row as usize * self.columns + column as usize)
+        };
+        points.filter_map(cell).collect()
+    }
+
     /// The cells whose middles are within a distance of a point, in metres, in their order.
     pub(super) fn cells_near(
         &self,

@@ -50,7 +50,18 @@ pub(super) struct LocalScans<'a> {
     pub viewpoints: Vec<Viewpoint>,
     /// Where the robot was.
     pub driven: Vec<Point2<f64>>,
+    /// What stopped it, and no scan shows.
+    pub felt: Vec<FeltWall>,
     pub params: &'a LaserParams,
+}
+
+/// A piece of wall that stopped the robot.
+#[derive(Clone, Copy, Debug)]
+pub struct FeltWall {
+    /// Where it stood.
+    pub robot: Point2<f64>,
+    /// The ends of the piece.
+    pub wall: [Point2<f64>; 2],
 }
 
 /// All ways on a local map, before it is judged which of them are arms.
@@ -64,6 +75,7 @@ pub(super) struct LocalWays<'a> {
 impl<'a> LocalWays<'a> {
     pub(super) fn new(mut grid: Grid, scans: LocalScans<'a>) -> Self {
         grid.clean(&scans.params.map);
+        scans.felt.iter().for_each(|felt| grid.build(felt.robot, felt.wall));
         let clearances = Clearances::new(grid);
         let skeleton = Skeleton::new(&clearances, scans.robot, scans.params);
         let graph = skeleton.as_ref().map(|ways| WayGraph::new(ways, &clearances));

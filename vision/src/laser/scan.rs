@@ -1,12 +1,14 @@
 //! One sweep of a laser scanner: ranges at equal steps of the angle, as `sensor_msgs/LaserScan` and CARMEN
 //! record them.
 
+use std::f64::consts::{PI, TAU};
+
 use nalgebra::{Isometry2, Point2, Vector2};
 use thiserror::Error;
 use toposlam_model::driving::scene::wrapped;
 
 use crate::{
-    geometry::{angle, unit},
+    geometry::{angle, distance, unit},
     place::ViewSector,
 };
 
@@ -154,6 +156,25 @@ impl Scan {
         self.scanner() + range * unit(bearing)
     }
 
+    /// The gaps between neighbouring hits that are at least this far apart, in metres, with readings between them, of which none
+    /// is a hit: the two hits of each, in metres in the robot's frame, in counter-clockwise order.
+    pub fn silent_gaps(&self, least: f64) -> Vec<[Point2<f64>; 2]> {
+        let increment = self.geometry.angle_increment;
+        let hits: Vec<(f64, Point2<f64>)> = self
+            .ranges_hit()
+            .filter_map(|(bearing, range)| Some((bearing, self.point(bearing, range?))))
+            .collect();
+        let is_all_round = self.field_of_view() + 1.5 * increment > TAU;
+        // From the last one to the first, too, if the scanner looks there.
+        let after = hits.iter().skip(1).chain(hits.first().filter(|_| is_all_round));
+        let gaps = hits.iter().zip(after).filter_map(|(&(bearing, one), &(next, other))| {
+            let angle = (next - bearing).rem_euclid(TAU);
+            let is_gap = (1.5 * increment..PI).contains(&angle) && distance(one, other) >= least;
+            is_gap.then_some([one, other])
+        });
+        gaps.collect()
+    }
+
     /// The direction along or across most of the walls, relative to the robot, in radians from -pi/4 to pi/4: the mean over
     /// their lengths. It is 0 if there are none.
     pub(super) fn direction_of_walls(&self) -> f64 {
@@ -199,7 +220,6 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
     use super::*;
-    use crate::geometry::distance;
 
     const HALF_CIRCLE: ScanGeometry = ScanGeometry {
         angle_min: -FRAC_PI_2,
@@ -210,6 +230,27 @@ mod tests {
 
     fn scan(geometry: ScanGeometry, ranges: &[f32]) -> Result<Scan, ScanError> {
         Scan::new(geometry, ranges.to_vec(), Isometry2::identity())
+    }
+
+    #[test]
+    fn a_gap_lies_between_two_hits_without_one_between_them() {
+        // A wall 2 m ahead, black between 10 and 20 degrees to the left, and a dropout 30 degrees to the right.
+        let silent = [10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, -30];
+        let range = |bearing: f64| {
+            let is_silent = silent.contains(&(bearing.to_degrees().round() as i32));
+            if is_silent { 0.0 } else { 2.0 / bearing.cos() }
+        };
+        let left = |degrees: f64| Point2::new(2.0, 2.0 * degrees.to_radians().tan());
+        let ahead = Scan::each_degree(-60, 121, range);
+        let gaps = ahead.silent_gaps(0.2);
+        let [[right, other]] = gaps[..] else { panic!("{gaps:?}") };
+        assert!(distance(right, left(9.0)) < 1e-6 && distance(other, left(21.0)) < 1e-6);
+        assert!(ahead.silent_gaps(0.5).is_empty(), "it is 0.45 m wide");
+        assert_eq!(ahead.silent_gaps(0.05).len(), 2, "the dropout");
+        // A scanner that looks all round sees what is behind it between its last reading and its first one.
+        let behind = |bearing: f64| if bearing.cos() > -0.9 { 1.0 } else { f64::INFINITY };
+        assert_eq!(Scan::each_degree(-180, 360, behind).silent_gaps(0.5).len(), 1);
+        assert!(Scan::each_degree(-150, 300, behind).silent_gaps(0.5).is_empty());
     }
 
     #[test]

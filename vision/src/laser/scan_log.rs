@@ -307,7 +307,8 @@ impl ScanLog {
             let grid = counts.window(robot, params.window(), params);
             let (viewpoints, driven) =
                 placed.iter().map(|scan| (scan.viewpoint.clone(), scan.robot())).unzip();
-            LocalWays::new(grid, LocalScans { robot, viewpoints, driven, params: &self.params })
+            let (felt, params) = (Vec::new(), &self.params);
+            LocalWays::new(grid, LocalScans { robot, viewpoints, driven, felt, params })
         };
         add(&mut counts, &mut placed, sure);
         // Facts are those of passes that lie on each other beyond doubt.

@@ -7,7 +7,7 @@ use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::odometry::Odometry;
 
 use super::{
-    local_map::{LocalMap, LocalScans, LocalView, LocalWays, is_near_origin, rays},
+    local_map::{FeltWall, LocalMap, LocalScans, LocalView, LocalWays, is_near_origin, rays},
     matching::ScanMatcher,
     params::LaserParams,
     ray_counts::{RayCounts, Rays},
@@ -37,6 +37,8 @@ pub struct LaserSensor {
     last: Option<Odometry>,
     /// That of the last view.
     map: Option<LocalMap>,
+    /// What stopped the robot, and the length of its way then, in metres.
+    felt: Vec<(FeltWall, f64)>,
 }
 
 #[derive(Clone, Debug)]
@@ -63,6 +65,11 @@ impl LaserSensor {
         self.map.as_ref()
     }
 
+    /// A piece of wall stopped the robot, on the map, and no scan shows it, as if it is of glass or black.
+    pub fn feel(&mut self, felt: FeltWall) {
+        self.felt.push((felt, self.way));
+    }
+
     /// Adds the rays of a scan, and forgets those of old ones.
     fn add(&mut self, scan: MappedScan, robot: Point2<f64>, side: usize) {
         let covers = |counts: &RayCounts| counts.covers(robot, side);
@@ -74,6 +81,7 @@ impl LaserSensor {
             }
             self.scans.pop_front();
         }
+        self.felt.retain(|&(_, way)| way >= forgotten);
         let add = |counts: &mut RayCounts, scan: &MappedScan| {
             counts.add(&scan.rays, &scan.map_from_robot);
         };
@@ -127,7 +135,8 @@ impl PlaceSensor for LaserSensor {
         let viewpoints: Vec<Viewpoint> =
             self.scans.iter().map(|scan| scan.viewpoint.clone()).collect();
         let driven = viewpoints.iter().map(Viewpoint::point).collect();
-        let scans = LocalScans { robot: position, viewpoints, driven, params: &self.params };
+        let felt = self.felt.iter().map(|&(felt, _)| felt).collect();
+        let scans = LocalScans { robot: position, viewpoints, driven, felt, params: &self.params };
         let LocalView { map, places, possible_places, width } = LocalWays::new(grid, scans).view();
         self.map = Some(map);
         Some(PlaceView {
@@ -151,7 +160,10 @@ impl PlaceSensor for LaserSensor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{geometry::unit, laser::grid::Cell};
+    use crate::{
+        geometry::unit,
+        laser::{ends::WayEnd, grid::Cell},
+    };
 
     /// A scan all around from the middle of an endless corridor, 2 m wide, along the x axis. Nothing
     /// comes back from beyond 30 m.
@@ -181,5 +193,49 @@ mod tests {
         let beside = Point2::from(2.0 * unit(0.3));
         let seen = cells(&along_corridor(is_silent), &[beside, Point2::new(8.0, 0.0)]);
         assert_eq!(seen, [Cell::Unknown, Cell::Free]);
+    }
+
+    /// The corridor ends at x = 4, and nothing comes back from the middle 1.5 m of that wall.
+    #[test]
+    fn a_way_whose_end_is_hidden_has_ended_once_a_wall_was_felt_there() {
+        let view = |sensor: &mut LaserSensor, x: f64| {
+            let range = |bearing: f64| {
+                let ahead = if bearing.cos() > 0.0 { (4.0 - x) / bearing.cos() } else { 99.0 };
+                let aside = 1.0 / bearing.sin().abs();
+                let is_silent = ahead < aside && (4.0 - x) * bearing.tan().abs() < 0.75;
+                if is_silent { f64::INFINITY } else { ahead.min(aside) }
+            };
+            let robot = Odometry { position: [x, 0.0], heading: 0.0 };
+            assert!(sensor.view(&Scan::each_degree(-180, 360, range), &robot).is_some());
+            let map = sensor.map().unwrap();
+            let ends = map.ways.nodes.iter().filter_map(|node| Some((node.point, node.end?.kind)));
+            ends.filter(|end| end.0.x > x).map(|end| end.1).collect::<Vec<WayEnd>>()
+        };
+        let mut sensor = LaserSensor::new(LaserParams::default());
+        for x in [0.0, 1.0, 2.0, 3.0, 3.7] {
+            view(&mut sensor, x);
+        }
+        assert_eq!(view(&mut sensor, 0.0), [WayEnd::Open]);
+        let robot = Point2::new(3.7, 0.0);
+        sensor.feel(FeltWall { robot, wall: [-0.25, 0.25].map(|y| Point2::new(4.0, y)) });
+        assert_eq!(view(&mut sensor, 1.0), [WayEnd::Closed]);
+    }
+
+    #[test]
+    fn a_wall_that_was_felt_is_forgotten_when_scans_are() {
+        let mut sensor = LaserSensor::new(LaserParams::default());
+        let mut is_wall = |x: f64, felt: bool| {
+            let robot = Odometry { position: [x, 0.0], heading: 0.0 };
+            assert!(sensor.view(&along_corridor(|_| false), &robot).is_some());
+            if felt {
+                let robot = Point2::new(4.5, 0.0);
+                sensor.feel(FeltWall { robot, wall: [-0.4, 0.4].map(|y| Point2::new(5.0, y)) });
+            }
+            let grid = &sensor.map().unwrap().clearances.grid;
+            grid.cells[grid.index(Point2::new(5.0, 0.0)).unwrap()] == Cell::Occupied
+        };
+        assert!(!is_wall(0.0, true), "it was felt after this view");
+        assert!(is_wall(1.0, false) && is_wall(18.0, false));
+        assert!(!is_wall(19.0, false));
     }
 }

@@ -166,6 +166,10 @@ impl<P: PlaceSensor, S: Copy + Default> Visits<P, S> {
         &self.sensor
     }
 
+    pub fn sensor_mut(&mut self) -> &mut P {
+        &mut self.sensor
+    }
+
     /// The place in which the robot is now, in the frame of the map: a junction, or what looked like one in some view;
     /// `None` within a corridor. It has no arms if it is none, and possible ones if the views do not decide.
     pub fn status(&self) -> Option<SeenPlace> {
