@@ -239,7 +239,7 @@ pub fn extract(
     let bound = mapping.only(asked).bind(log)?;
     let threads = rayon::current_num_threads();
     let events = RunEvents { truncated: log.truncation().is_some(), ..RunEvents::default() };
-    let extraction = |placing| Extraction {
+    let extraction = |placing, laser| Extraction {
         run: ExtractedRun { events: events.clone(), evidence, ..ExtractedRun::default() },
         recorded: RecordedEvents::default(),
         scenes: PlacedScenes::default(),
@@ -250,9 +250,10 @@ pub fn extract(
         scans: LoggedScans { sources: Vec::new(), log: ScanLogBuilder::new(laser) },
         placing,
     };
-    let mut read = extraction(Placing::Odometry(ScanOdometry::default()));
+    let mut read = extraction(Placing::Odometry(ScanOdometry::default()), laser);
     if read.read_entries(log, &bound)? == HasOdometry::No {
-        read = extraction(Placing::Scans(Box::new(ScanTrack::new(&laser.matching))));
+        let placing = Placing::Scans(Box::new(ScanTrack::new(&laser.matching)));
+        read = extraction(placing, laser.for_matched_scans());
         read.read_entries(log, &bound)?;
     }
     let Extraction { mut run, recorded, scenes, scans, .. } = read;

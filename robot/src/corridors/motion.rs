@@ -30,6 +30,9 @@ pub(super) enum NoWay {
     Obstacle,
 }
 
+/// Parts of the length that the robot looks ahead on its way, the longest first.
+const NEARER: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.0];
+
 /// How a stretch of the way ended.
 enum StretchEnd {
     NoWay(NoWay),
@@ -309,7 +312,11 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 LineEnd::Unknown => Ok((!self.feels_for_wall()?).then_some(NoWay::Unseen)),
             };
         }
+        // A wall may be between it and what is ahead on its way, as at a corner.
+        let nearer = NEARER.iter().filter_map(|part| along(&way.line, part * look_ahead));
+        let seen = nearer.into_iter().find(|to| map.is_clear_between(robot, *to));
         let beyond = along(&way.line, 2.0 * look_ahead).unwrap_or(target);
+        let target = seen.unwrap_or(target);
         let (target, beyond) = (self.odometry_from_map * target, self.odometry_from_map * beyond);
         let before = self.at();
         self.step_to(target)?;

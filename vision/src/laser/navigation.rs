@@ -121,6 +121,12 @@ impl LocalMap {
         WayAhead { line, end }
     }
 
+    /// Whether no wall is between two points.
+    pub fn is_clear_between(&self, from: Point2<f64>, to: Point2<f64>) -> bool {
+        let (length, cell) = self.clearances.sight(from, direction(from, to), distance(from, to));
+        cell != Cell::Occupied || length >= distance(from, to)
+    }
+
     /// Whether a robot of this radius can stand at a point.
     pub fn has_space_at(&self, point: Point2<f64>, radius: f64) -> bool {
         let grid = &self.clearances.grid;
@@ -324,6 +330,16 @@ mod tests {
         assert!(
             map.has_space_at([30.0, 2.5].into(), 0.9) && !map.has_space_at([30.0, 3.3].into(), 0.9)
         );
+    }
+
+    #[test]
+    fn a_wall_is_between_two_points_on_both_sides_of_a_corner() {
+        let map = map(Point2::new(14.0, 2.5));
+        let clear = |from: [f64; 2], to: [f64; 2]| map.is_clear_between(from.into(), to.into());
+        assert!(clear([14.0, 2.5], [20.0, 2.5]) && clear([20.0, 2.5], [20.0, 20.0]));
+        assert!(clear([18.5, 2.0], [20.0, 4.5]) && !clear([17.5, 3.0], [20.0, 6.5]));
+        assert!(!clear([20.0, 20.0], [30.0, 2.5]));
+        assert!(clear([30.0, 2.5], [60.0, 2.5]), "nothing is known there");
     }
 
     #[test]

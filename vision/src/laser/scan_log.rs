@@ -156,6 +156,7 @@ impl ScanLogBuilder {
         let Self { mut params, meter, choice } = self;
         let drift = meter.finish().filter(|&drift| drift > params.matching.max_drift);
         if drift.is_some() {
+            params = params.for_matched_scans();
             params.matching.rounds = ROUNDS;
         }
         let chosen = choice.finish();
