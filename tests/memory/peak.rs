@@ -1,12 +1,24 @@
 //! The memory that readers take, for tests that it is no more than documented. The allocator of the whole program is
-//! measured, so each of these tests is a program of its own.
+//! measured, so each of these tests is a program of its own, with one thread.
 
 use std::{fmt::Display, hint::black_box};
 
+use libtest_mimic::{Arguments, Trial};
 use peak_alloc::PeakAlloc;
 
 #[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
+pub(crate) static MEMORY: PeakAlloc = PeakAlloc;
+
+/// Runs this test on the main thread, and ends the program.
+pub(crate) fn run(name: &str, test: fn()) -> ! {
+    let arguments = Arguments { test_threads: Some(1), ..Arguments::from_args() };
+    let trial = Trial::test(name, move || {
+        assert_measured();
+        test();
+        Ok(())
+    });
+    libtest_mimic::run(&arguments, vec![trial]).exit()
+}
 
 /// The most memory taken at any time while this runs.
 pub(crate) fn peak(run: impl FnOnce()) -> usize {
@@ -16,11 +28,9 @@ pub(crate) fn peak(run: impl FnOnce()) -> usize {
     MEMORY.peak_usage().saturating_sub(before)
 }
 
-/// The allocator is measured. The thread that waits for the test may take a little memory meanwhile.
-pub(crate) fn assert_measured() {
-    let (taken, besides) = (1 << 20, 4096);
-    let measured = peak(|| drop(black_box(Vec::<u8>::with_capacity(taken))));
-    assert!((taken - besides..=taken + besides).contains(&measured), "{measured}");
+/// The allocator is measured, and nobody else takes memory.
+fn assert_measured() {
+    assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1 << 20)))), 1 << 20);
 }
 
 /// A reader, and what it documents: so many bytes of memory for each byte, and so many besides.
