@@ -313,10 +313,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             };
         }
         // A wall may be between it and what is ahead on its way, as at a corner.
-        let nearer = NEARER.iter().filter_map(|part| along(&way.line, part * look_ahead));
-        let seen = nearer.into_iter().find(|to| map.is_clear_between(robot, *to));
+        let mut nearer = NEARER.iter().filter_map(|part| along(&way.line, part * look_ahead));
+        let in_sight = nearer.find(|to| map.is_clear_between(robot, *to));
         let beyond = along(&way.line, 2.0 * look_ahead).unwrap_or(target);
-        let target = seen.unwrap_or(target);
+        let target = in_sight.unwrap_or(target);
         let (target, beyond) = (self.odometry_from_map * target, self.odometry_from_map * beyond);
         let before = self.at();
         self.step_to(target)?;

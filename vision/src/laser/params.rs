@@ -435,6 +435,16 @@ mod tests {
         assert_eq!(given.for_range(3.5), given, "what a file sets");
     }
 
+    #[test]
+    fn where_scans_are_matched_more_rays_must_end_at_a_wall() {
+        let usual = LaserParams::default();
+        let matched = usual.for_matched_scans();
+        assert!(matched.map.occupied > usual.map.occupied, "{matched:?}");
+        assert_eq!(LaserParams { map: usual.map, ..matched }, usual);
+        let given: LaserParams = read("[map]\noccupied = 0.1").unwrap();
+        assert_eq!(given.for_matched_scans(), given, "what a file sets");
+    }
+
     const ERRORS: &str = r#"
 [arm]\nmin = 2.0 | line 2, column 1: arm.min: unknown key; expected one of: min_arm,
 min_arm = 2.0 | line 1, column 1: min_arm: unknown key; expected one of: matching, map, arm, corner, visit, network

@@ -35,6 +35,15 @@ fn the_cells_of_a_map_of_2_m_by_1_5_m_are_counted_from_its_corner() {
 }
 
 #[test]
+fn a_wall_that_stopped_a_robot_is_on_the_map_with_free_space_before_it_and_not_on_the_border() {
+    let mut grid = drawn(&["        ", " ....   ", " ..#    ", " ...    ", " ....   ", "        "]);
+    // From 1.5 m east of the robot to beyond the map.
+    grid.build([2.25, 3.75].into(), [[3.75, 3.25], [3.75, 6.0]].map(Point2::from));
+    let built = ["        ", " ....#  ", " ..#.#  ", " ....#  ", " ....   ", "        "];
+    assert_eq!(rows(&grid), built, "what was seen stays");
+}
+
+#[test]
 fn the_cells_near_a_point_are_those_whose_middles_are() {
     let grid = drawn(&["......"; 5]);
     let middle = grid.point(2 * 6 + 3);

@@ -54,8 +54,7 @@ fn the_rays_of_a_scan_end_on_the_walls_of_the_room() {
     for ([from, end], hit) in rays.free.iter().zip(&rays.hits) {
         assert!(from.coords.norm() < 1e-9 && distance(*end, *hit) < 1e-9);
     }
-    // Neighbouring ends are farther apart than a cell only on walls
-    // that rays meet at a small angle.
+    // Neighbouring ends are farther apart than a cell only on walls that rays meet at a small angle.
     assert!(rays.walls.iter().all(|[one, other]| distance(*one, *other) >= 0.15));
 }
 

@@ -308,6 +308,7 @@ fn where_odometry_drifts_scans_are_placed_by_their_walls() {
     let drift = log.drift().unwrap();
     assert!((drift - 0.04).abs() < 0.01, "{drift}");
     assert_eq!(log.params().matching.rounds, 8);
+    assert_eq!(log.params().map, LaserParams::default().for_matched_scans().map);
     // The frame begins where the robot did, along the walls.
     for view in 0..log.len() {
         let there = poses[log.scan(view)];
@@ -320,6 +321,7 @@ fn where_odometry_drifts_scans_are_placed_by_their_walls() {
     let (log, _) = driven_log(&legs, 0.01);
     assert_eq!(log.drift(), None);
     assert_eq!(log.params().matching.rounds, 0);
+    assert_eq!(log.params().map, LaserParams::default().map);
 }
 
 #[test]
