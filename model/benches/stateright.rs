@@ -123,7 +123,7 @@ impl Model for AllChoices {
     }
 
     fn actions(&self, waiting: &Waiting, actions: &mut Vec<MappingChoice>) {
-        *actions = waiting.run.clone().choices().unwrap();
+        waiting.run.clone().add_choices(actions).unwrap();
     }
 
     fn next_state(&self, waiting: &Waiting, choice: MappingChoice) -> Option<Waiting> {

@@ -1,16 +1,15 @@
 //! An explorer with all choices. Of Algorithm 1: every order at line 5, and at line 9 among the hypotheses that
 //! the percept on arrival has not already contradicted. Section 2.3.
 
-use std::vec;
-
 use hashbrown::HashMap;
+use smallvec::SmallVec;
 
 use super::{ChoicesLimit, Costs, EveryWay, judge, judge::check_moves};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{Explorer, FACING, Flaw, MapWalk, StateKey},
+    mapping::{Explorer, FACING, Flaw, MapWalk, StateLevel},
     world::GraphWorld,
 };
 
@@ -41,30 +40,44 @@ impl RunChoices {
     pub fn others<E: Explorer>(
         self,
         new: impl Fn() -> E,
-        graph: &EmbeddedGraph,
-        facing: Dart,
+        (graph, facing): (&EmbeddedGraph, Dart),
+        memory: &mut SearchMemory<E>,
         watch: &dyn Watch,
     ) -> Result<Option<EveryWay>, Flaw> {
         match self {
             Self::Default => Ok(None),
-            Self::All { budget } => every_way(new(), graph, facing, budget, watch).map(Some),
+            Self::All { budget } => {
+                every_way_in(memory, new(), (graph, facing), budget, watch).map(Some)
+            }
         }
     }
 }
 
 /// Runs an explorer on a start with all choices, and judges the end of every run. States that are
-/// [compared](Explorer::state_key) are explored once; runs are counted. The search stops after `budget` states,
+/// [compared](Explorer::write_key) are explored once; runs are counted. The search stops after `budget` states,
 /// including those within a round, when the states take 1 GiB of memory, or when the watch stops it.
 ///
 /// # Errors
 /// Returns the first [`Flaw`].
 pub fn every_way<E: Explorer>(
-    mut explorer: E,
+    explorer: E,
     graph: &EmbeddedGraph,
     facing: Dart,
     budget: u64,
     watch: &dyn Watch,
 ) -> Result<EveryWay, Flaw> {
+    every_way_in(&mut SearchMemory::default(), explorer, (graph, facing), budget, watch)
+}
+
+fn every_way_in<E: Explorer>(
+    memory: &mut SearchMemory<E>,
+    mut explorer: E,
+    (graph, facing): (&EmbeddedGraph, Dart),
+    budget: u64,
+    watch: &dyn Watch,
+) -> Result<EveryWay, Flaw> {
+    memory.known.clear();
+    memory.choices.clear();
     let mut world = GraphWorld::with_aid(graph, explorer.aid(), facing);
     let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
     explorer.limit_darts(graph.dart_count());
@@ -76,18 +89,15 @@ pub fn every_way<E: Explorer>(
         begun: [0; 2],
         bytes: 0,
         limit: None,
-        known: HashMap::new(),
         rounds: Vec::new(),
         stack: Vec::new(),
-        spare: Vec::new(),
-        spare_rounds: Vec::new(),
-        candidate: Candidate::default(),
+        memory,
     };
-    let is_compared = explorer.state_key().is_some();
+    let is_compared = explorer.write_key(&mut Vec::new()).is_some();
     let Futures { runs, costs } = search.run(world, Box::new(explorer))?;
     check_moves(costs.max().unwrap_or(0), bound)?;
     let [begun, within_rounds] = search.begun;
-    let states = if is_compared { search.known.len() as u64 } else { begun };
+    let states = if is_compared { search.memory.known.len() as u64 } else { begun };
     Ok(EveryWay { states, within_rounds, runs, costs, limit: search.limit })
 }
 
@@ -109,46 +119,86 @@ impl Futures {
     }
 }
 
+/// A key of a state: a short one needs no memory elsewhere.
+type Key = SmallVec<[u32; 6]>;
+
 /// A round: what begins at a state between two rounds, by one choice.
 struct Round {
     vertices: usize,
-    /// What can follow each state within it: the hypotheses that are left.
-    known: HashMap<Vec<Dart>, Futures>,
+    /// The number of states on the stack when it begins.
+    first: usize,
+    /// What can follow a state within it, by the hypotheses that are left, if it can be reached in several ways.
+    known: HashMap<Key, Futures>,
     bytes: usize,
+}
+
+impl Round {
+    /// Whether a state within it that is entered on a stack with so many states can be reached in several ways: at least
+    /// two hypotheses were rejected, in any order.
+    fn meets(&self, stack: usize) -> bool {
+        stack >= self.first + 2
+    }
 }
 
 /// A state whose choices are being followed, one after the other.
 struct SearchFrame<'g, E: Explorer> {
     /// Where it is kept when all that can follow it is known; `None` if it is not compared.
-    key: Option<StateKey>,
+    key: Option<(StateLevel, Key)>,
     /// Whether it follows the state within a round in which no hypothesis is left: the place is new.
     is_new_place: bool,
     world: GraphWorld<'g, E::Aid>,
-    explorer: Box<E>,
-    choices: vec::IntoIter<E::Choice>,
+    /// `None` once the last choice was made.
+    explorer: Option<Box<E>>,
+    /// The vertices and the darts that the explorer knows.
+    known: (usize, usize),
+    /// Where its choices begin, and the next one, among those of all states on the stack.
+    first_choice: usize,
+    next_choice: usize,
     moves: u64,
     futures: Futures,
     bytes: usize,
 }
 
-struct Search<'g, 'w, E: Explorer> {
+struct Search<'g, 'm, E: Explorer> {
     facing: Dart,
     budget: u64,
-    watch: &'w dyn Watch,
+    watch: &'m dyn Watch,
     /// States begun between two rounds, and within one.
     begun: [u64; 2],
     bytes: usize,
     limit: Option<ChoicesLimit>,
-    /// For each state between two rounds, what can follow it, and the robot's pose in the world.
-    known: HashMap<StateKey, (Futures, Dart)>,
     /// The rounds that have begun: one for each state between two rounds on the stack.
     rounds: Vec<Round>,
     stack: Vec<SearchFrame<'g, E>>,
+    memory: &'m mut SearchMemory<E>,
+}
+
+/// What a search knows. The next search uses its memory again.
+pub struct SearchMemory<E: Explorer> {
+    /// For each state between two rounds, what can follow it, and the robot's pose in the world.
+    known: HashMap<Key, (Futures, Dart)>,
+    /// The choices of the states on the stack.
+    choices: Vec<E::Choice>,
+    /// Scratch: the key of the state that is entered.
+    key: Vec<u32>,
     /// Explorers whose memory is used again.
     spare: Vec<Box<E>>,
     /// The same of finished rounds.
-    spare_rounds: Vec<HashMap<Vec<Dart>, Futures>>,
+    spare_rounds: Vec<HashMap<Key, Futures>>,
     candidate: Candidate,
+}
+
+impl<E: Explorer> Default for SearchMemory<E> {
+    fn default() -> Self {
+        Self {
+            known: HashMap::new(),
+            choices: Vec::new(),
+            key: Vec::new(),
+            spare: Vec::new(),
+            spare_rounds: Vec::new(),
+            candidate: Candidate::default(),
+        }
+    }
 }
 
 impl<'g, E: Explorer> Search<'g, '_, E> {
@@ -158,17 +208,17 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         while let Some(frame) = self.stack.last_mut() {
             if let Some(futures) = found.take() {
                 frame.futures.include(&futures, frame.moves);
-                if matches!(frame.key, Some(StateKey::Round(_)))
+                if matches!(frame.key, Some((StateLevel::BetweenRounds, _)))
                     && let Some(Round { mut known, bytes, .. }) = self.rounds.pop()
                 {
                     self.bytes -= bytes;
                     known.clear();
-                    self.spare_rounds.push(known);
+                    self.memory.spare_rounds.push(known);
                 }
             }
-            let next =
-                frame.choices.next().filter(|_| self.limit != Some(ChoicesLimit::Interrupted));
-            found = match next {
+            let next = self.memory.choices.get(frame.next_choice).copied();
+            frame.next_choice += 1;
+            found = match next.filter(|_| self.limit != Some(ChoicesLimit::Interrupted)) {
                 Some(choice) => self.follow(choice)?,
                 None => self.leave(),
             };
@@ -199,44 +249,51 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         world: GraphWorld<'g, E::Aid>,
         mut explorer: Box<E>,
     ) -> Result<Option<Futures>, Flaw> {
-        let key = explorer.state_key();
-        let vertices = known_size(&*explorer).0;
-        let is_new_place = matches!(key, Some(StateKey::Round(_)))
-            && self.rounds.last().is_some_and(|last| vertices > last.vertices);
-        if let Some(futures) = self.known(key.as_ref(), is_new_place, &world, &explorer)? {
-            self.spare.push(explorer);
+        let level = explorer.write_key(&mut self.memory.key);
+        let known = known_size(&*explorer);
+        let is_new_place = level == Some(StateLevel::BetweenRounds)
+            && self.rounds.last().is_some_and(|last| known.0 > last.vertices);
+        if let Some(futures) = self.known(level, is_new_place, &world, &explorer)? {
+            self.memory.spare.push(explorer);
             return Ok(Some(futures));
         }
-        let choices = explorer.choices()?;
+        let first_choice = self.memory.choices.len();
+        explorer.add_choices(&mut self.memory.choices)?;
+        let choices = self.memory.choices.len() - first_choice;
         let mut futures = Futures::default();
         // At the end of a run there is no choice: then the run is judged.
-        if choices.is_empty() {
-            judge(&*explorer, self.facing, &world, &mut self.candidate)?;
+        if choices == 0 {
+            judge(&*explorer, self.facing, &world, &mut self.memory.candidate)?;
             futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
         }
-        let bytes = 500 + 100 * known_size(&*explorer).1 + 20 * choices.len();
+        let bytes = 500 + 100 * known.1 + 20 * choices;
         self.bytes += bytes;
-        let (choices, moves) = (choices.into_iter(), 0);
-        let frame =
-            SearchFrame { key, is_new_place, world, explorer, choices, moves, futures, bytes };
-        self.stack.push(frame);
+        self.stack.push(SearchFrame {
+            key: level.map(|level| (level, Key::from_slice(&self.memory.key))),
+            is_new_place,
+            world,
+            explorer: Some(explorer),
+            known,
+            first_choice,
+            next_choice: first_choice,
+            moves: 0,
+            futures,
+            bytes,
+        });
         Ok(None)
     }
 
     /// What can follow a state, without a search: if it was searched before, or the search has reached its limit.
     fn known(
         &mut self,
-        key: Option<&StateKey>,
+        level: Option<StateLevel>,
         is_new_place: bool,
         world: &GraphWorld<'g, E::Aid>,
         explorer: &E,
     ) -> Result<Option<Futures>, Flaw> {
-        let mut level = 0;
-        if let Some(StateKey::WithinRound(hypotheses)) = key {
-            if let Some(known) = self.in_round(hypotheses) {
-                return Ok(Some(known));
-            }
-            level = 1;
+        let is_within = level == Some(StateLevel::WithinRound);
+        if is_within && let Some(known) = self.in_round(&self.memory.key) {
+            return Ok(Some(known));
         }
         if is_new_place {
             if let Some(known) = self.in_round(&[]) {
@@ -246,7 +303,9 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
                 return Ok(Some(Futures::default()));
             }
         }
-        if let Some((futures, image)) = key.and_then(|key| self.known.get(key)) {
+        if level == Some(StateLevel::BetweenRounds)
+            && let Some((futures, image)) = self.memory.known.get(&self.memory.key[..])
+        {
             // One state, one place in the world; it may have been entered by another dart.
             let (graph, truly, image) = (world.graph(), world.pose(), *image);
             if graph.vertex(image) != graph.vertex(truly) {
@@ -257,60 +316,75 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
             self.keep_new_place(is_new_place, &futures);
             return Ok(Some(futures));
         }
-        Ok((!self.begin(level)).then(Futures::default))
+        Ok((!self.begin(usize::from(is_within))).then(Futures::default))
     }
 
     /// What can follow a choice at the state on top of the stack. As [`Self::enter`].
     fn follow(&mut self, choice: E::Choice) -> Result<Option<Futures>, Flaw> {
         let Some(frame) = self.stack.last_mut() else { return Ok(None) };
         let mut world = frame.world.clone();
-        let mut next = match self.spare.pop() {
-            Some(mut spare) => {
-                spare.clone_from(&frame.explorer);
-                spare
-            }
-            None => frame.explorer.clone(),
+        let next = if frame.next_choice == self.memory.choices.len() {
+            frame.explorer.take()
+        } else if let (Some(explorer), Some(mut spare)) = (&frame.explorer, self.memory.spare.pop())
+        {
+            spare.clone_from(explorer);
+            Some(spare)
+        } else {
+            frame.explorer.clone()
         };
+        let Some(mut next) = next else { return Ok(None) };
         next.step(choice, &mut world)?;
         frame.moves = world.moves() - frame.world.moves();
-        if let Some(StateKey::Round(_)) = &frame.key {
-            let vertices = known_size(&*frame.explorer).0;
-            let known = self.spare_rounds.pop().unwrap_or_default();
-            self.rounds.push(Round { vertices, known, bytes: 0 });
+        if let Some((StateLevel::BetweenRounds, _)) = &frame.key {
+            let known = self.memory.spare_rounds.pop().unwrap_or_default();
+            let (vertices, first) = (frame.known.0, self.stack.len());
+            self.rounds.push(Round { vertices, first, known, bytes: 0 });
         }
         self.enter(world, next)
     }
 
     /// Removes the state on top of the stack, whose choices were all followed. Returns what can follow it.
     fn leave(&mut self) -> Option<Futures> {
-        let SearchFrame { key, is_new_place, world, explorer, futures, bytes, .. } =
-            self.stack.pop()?;
+        let SearchFrame {
+            key,
+            is_new_place,
+            world,
+            explorer,
+            known,
+            first_choice,
+            futures,
+            bytes,
+            ..
+        } = self.stack.pop()?;
+        self.memory.choices.truncate(first_choice);
         self.bytes -= bytes;
         match key {
             None => {}
-            Some(StateKey::WithinRound(hypotheses)) => self.keep_in_round(hypotheses, &futures),
-            Some(key) => {
-                self.bytes += 100 + 20 * known_size(&*explorer).1 + futures.bytes();
-                self.known.insert(key, (futures.clone(), world.pose()));
+            Some((StateLevel::WithinRound, left)) => self.keep_in_round(left, &futures),
+            Some((StateLevel::BetweenRounds, key)) => {
+                self.bytes += 100 + 20 * known.1 + futures.bytes();
+                self.memory.known.insert(key, (futures.clone(), world.pose()));
                 self.keep_new_place(is_new_place, &futures);
             }
         }
-        self.spare.push(explorer);
+        self.memory.spare.extend(explorer);
         Some(futures)
     }
 
-    fn in_round(&self, hypotheses: &[Dart]) -> Option<Futures> {
-        self.rounds.last()?.known.get(hypotheses).cloned()
+    fn in_round(&self, hypotheses: &[u32]) -> Option<Futures> {
+        let round = self.rounds.last().filter(|round| round.meets(self.stack.len()))?;
+        round.known.get(hypotheses).cloned()
     }
 
     fn keep_new_place(&mut self, is_new_place: bool, futures: &Futures) {
         if is_new_place {
-            self.keep_in_round(Vec::new(), futures);
+            self.keep_in_round(Key::new(), futures);
         }
     }
 
-    fn keep_in_round(&mut self, hypotheses: Vec<Dart>, futures: &Futures) {
-        let Some(round) = self.rounds.last_mut() else { return };
+    fn keep_in_round(&mut self, hypotheses: Key, futures: &Futures) {
+        let stack = self.stack.len();
+        let Some(round) = self.rounds.last_mut().filter(|round| round.meets(stack)) else { return };
         let bytes = 40 + 4 * hypotheses.len() + futures.bytes();
         round.bytes += bytes;
         self.bytes += bytes;
@@ -356,12 +430,12 @@ mod tests {
     impl Explorer for Altered {
         delegate_to_run!(DirectionalMarker, MappingChoice);
 
-        fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
-            let choices = self.run.choices()?.into_iter().map(|choice| match choice {
+        fn add_choices(&mut self, choices: &mut Vec<MappingChoice>) -> Result<(), InvalidStep> {
+            choices.extend(self.run.choices()?.into_iter().map(|choice| match choice {
                 MappingChoice::Hypothesis(index) => MappingChoice::Hypothesis(index + self.off),
                 edge @ MappingChoice::Edge(_) => edge,
-            });
-            Ok(choices.collect())
+            }));
+            Ok(())
         }
 
         fn step<W: ObservedWorld>(&mut self, choice: MappingChoice, world: &mut W) -> Mapped<W> {

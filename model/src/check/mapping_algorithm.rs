@@ -5,8 +5,8 @@
 use std::borrow::Cow;
 
 use super::{
-    Check, CheckPieces, EveryWay, FinishedUnits, PartTally, Probe, RunChoices, SharedPrefixCheck,
-    Tally, check_worlds, judge::check_moves, judge_map,
+    Check, CheckPieces, EveryWay, FinishedUnits, PartTally, Probe, RunChoices, SearchMemory,
+    SharedPrefixCheck, Tally, check_worlds, judge::check_moves, judge_map,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -84,6 +84,6 @@ impl MappingAlgorithm {
         (graph, facing): (&EmbeddedGraph, Dart),
         watch: &dyn Watch,
     ) -> Result<Option<EveryWay>, Flaw> {
-        with_explorer!(self, new => choices.others(new, graph, facing, watch))
+        with_explorer!(self, new => choices.others(new, (graph, facing), &mut SearchMemory::default(), watch))
     }
 }

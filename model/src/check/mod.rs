@@ -13,7 +13,7 @@ pub(crate) mod smallest_failure;
 mod tally;
 
 pub use costs::{ChoicesLimit, Costs, EveryWay};
-pub use every_way::{DEFAULT_STATE_BUDGET, RunChoices, every_way};
+pub use every_way::{DEFAULT_STATE_BUDGET, RunChoices, SearchMemory, every_way};
 pub use guess::{determines_world, other_world};
 pub use judge::{FalseStep, first_false_step, judge, judge_map, judge_start};
 pub use mistakes::{

@@ -4,7 +4,7 @@ use std::{fmt, ops::ControlFlow, str::FromStr};
 
 use thiserror::Error;
 
-use super::{FailedStart, RunChoices, Tally, WorstStart, judge_start};
+use super::{FailedStart, RunChoices, SearchMemory, Tally, WorstStart, judge_start};
 use crate::{
     aid::Aid,
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
@@ -145,12 +145,13 @@ fn tally_parts<P: Sync>(
 }
 
 /// Checks the starts of one part, one after the other. Memory is kept from start to start.
-struct StartChecker<'a, E, N> {
+struct StartChecker<'a, E: Explorer, N> {
     new: &'a N,
     explorer: E,
     choices: RunChoices,
     watch: &'a dyn Watch,
     candidate: Candidate,
+    memory: SearchMemory<E>,
     /// Measures certificates, if the marker has them.
     certificates: Option<MarkerTree>,
 }
@@ -160,7 +161,15 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
         let explorer = new();
         let directional = explorer.aid().name() == Marker::name(&Directional);
         let certificates = directional.then(MarkerTree::default);
-        Self { new, explorer, choices, watch, candidate: Candidate::default(), certificates }
+        Self {
+            new,
+            explorer,
+            choices,
+            watch,
+            candidate: Candidate::default(),
+            memory: SearchMemory::default(),
+            certificates,
+        }
     }
 
     fn check_starts(
@@ -214,7 +223,7 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
                 let is_worst = tally.worst.as_ref().is_none_or(|worst| moves > worst.moves);
                 let worst = is_worst.then(|| WorstStart { graph: graph.clone(), facing, moves });
                 tally.count_run((moves, graph.vertex_count()), certificate, worst);
-                match self.choices.others(self.new, graph, facing, self.watch) {
+                match self.choices.others(self.new, (graph, facing), &mut self.memory, self.watch) {
                     Ok(ways) => {
                         if let Some(ways) = &ways {
                             tally.count_every_way(ways);

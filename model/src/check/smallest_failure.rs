@@ -113,8 +113,8 @@ macro_rules! delegate_to_run {
             self.run.map_walk()
         }
 
-        fn state_key(&self) -> Option<StateKey> {
-            self.run.state_key()
+        fn write_key(&self, key: &mut Vec<u32>) -> Option<StateLevel> {
+            self.run.write_key(key)
         }
     };
 }

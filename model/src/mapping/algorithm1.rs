@@ -7,7 +7,7 @@ use std::{cmp::Reverse, mem};
 
 use super::{
     Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, Mapped,
-    MappingError, MappingEvent, ObservedWorld, PartialMap, StateKey, StepPurpose,
+    MappingError, MappingEvent, ObservedWorld, PartialMap, StateLevel, StepPurpose,
     map_walk::has_walk, partial_map::START,
 };
 use crate::{
@@ -105,8 +105,9 @@ impl Explorer for Algorithm1Run {
         })
     }
 
-    fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
-        Ok(self.open_choices())
+    fn add_choices(&mut self, choices: &mut Vec<MappingChoice>) -> Result<(), InvalidStep> {
+        self.add_open_choices(choices);
+        Ok(())
     }
 
     /// The first part of line 6.
@@ -129,11 +130,11 @@ impl Explorer for Algorithm1Run {
         Some(&self.walk)
     }
 
-    fn state_key(&self) -> Option<StateKey> {
+    fn write_key(&self, key: &mut Vec<u32>) -> Option<StateLevel> {
         Some(if self.is_at_line_8() {
-            StateKey::WithinRound(self.hypotheses.clone())
+            StateLevel::within_round(&self.hypotheses, key)
         } else {
-            StateKey::round(self.map(), self.map().vertex(self.robot()))
+            StateLevel::between_rounds(self.map(), self.map().vertex(self.robot()), key)
         })
     }
 
@@ -169,12 +170,12 @@ impl Algorithm1Run {
         self.walk.edge.is_some()
     }
 
-    /// Edges in the order of their numbers, or hypotheses from the farthest to the nearest.
-    pub(crate) fn open_choices(&self) -> Vec<MappingChoice> {
+    /// Adds edges in the order of their numbers, or hypotheses from the farthest to the nearest.
+    pub(crate) fn add_open_choices(&self, choices: &mut Vec<MappingChoice>) {
         if self.is_at_line_8() {
-            (0..self.hypotheses.len()).map(MappingChoice::Hypothesis).collect()
+            choices.extend((0..self.hypotheses.len()).map(MappingChoice::Hypothesis));
         } else {
-            self.map().unexplored().map(MappingChoice::Edge).collect()
+            choices.extend(self.map().unexplored().map(MappingChoice::Edge));
         }
     }
 

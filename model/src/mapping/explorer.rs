@@ -59,8 +59,17 @@ pub trait Explorer: Clone {
         Ok(None)
     }
 
+    /// Adds the choices with which the run can go on.
+    fn add_choices(&mut self, choices: &mut Vec<Self::Choice>) -> Result<(), InvalidStep> {
+        choices.extend(self.choose()?);
+        Ok(())
+    }
+
+    /// The choices with which the run can go on.
     fn choices(&mut self) -> Result<Vec<Self::Choice>, InvalidStep> {
-        Ok(self.choose()?.into_iter().collect())
+        let mut choices = Vec::new();
+        self.add_choices(&mut choices)?;
+        Ok(choices)
     }
 
     /// Makes the first moves of a step, in the known part of the world. [`step`](Self::step) then makes the others.
@@ -85,8 +94,9 @@ pub trait Explorer: Clone {
         Ok(ExploredMap { graph: Cow::Borrowed(graph), facing: FACING, pose: walk.robot() })
     }
 
-    /// What distinguishes its state from others of the same start; `None` if states are not compared.
-    fn state_key(&self) -> Option<StateKey> {
+    /// Writes numbers that distinguish its state from others of the same start and level, and returns the level; `None` if
+    /// states are not compared.
+    fn write_key(&self, _key: &mut Vec<u32>) -> Option<StateLevel> {
         None
     }
 
@@ -101,24 +111,30 @@ pub trait Explorer: Clone {
     }
 }
 
-/// What distinguishes a state from others of the same start, so that equal states are followed once.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum StateKey {
-    /// Between two rounds: the map, numbered by discovery, and the robot's vertex in it, as numbers.
-    Round(Box<[u32]>),
-    /// Within a round: the hypotheses that are left.
-    WithinRound(Vec<Dart>),
+/// Where a run waits for a choice. Equal states of one level are followed once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StateLevel {
+    /// The key is the map, numbered by discovery, and the robot's vertex in it.
+    BetweenRounds,
+    /// The key is the hypotheses that are left.
+    WithinRound,
 }
 
-impl StateKey {
-    pub(crate) fn round(map: &PartialMap, robot: Vertex) -> Self {
-        let mut numbers = Vec::with_capacity(1 + map.vertex_count() + map.dart_count());
-        numbers.push(robot.0);
+impl StateLevel {
+    pub(crate) fn between_rounds(map: &PartialMap, robot: Vertex, key: &mut Vec<u32>) -> Self {
+        key.clear();
+        key.push(robot.0);
         for vertex in map.vertices() {
-            numbers.push(map.degree(vertex));
-            numbers.extend(map.opposites_of(vertex).map(|dart| dart.0));
+            key.push(map.degree(vertex));
+            key.extend(map.opposites_of(vertex).map(|dart| dart.0));
         }
-        Self::Round(numbers.into_boxed_slice())
+        Self::BetweenRounds
+    }
+
+    pub(crate) fn within_round(hypotheses: &[Dart], key: &mut Vec<u32>) -> Self {
+        key.clear();
+        key.extend(hypotheses.iter().map(|hypothesis| hypothesis.0));
+        Self::WithinRound
     }
 }
 

@@ -22,7 +22,7 @@ mod tree;
 pub use algorithm1::{Algorithm1Run, MappingChoice};
 pub use contradiction::{Contradiction, Flaw, InvalidStep, MappingError};
 pub use explored_map::ExploredMap;
-pub use explorer::{CostOrder, Explorer, ExplorerInfo, StateKey, explore, explore_with};
+pub use explorer::{CostOrder, Explorer, ExplorerInfo, StateLevel, explore, explore_with};
 pub(crate) use folding_explorer::map_with_recovery;
 pub use folding_explorer::{
     ArrivalMeasurement, EarlierWalk, FoldingRun, FoldingStep, HypothesisTest, MappedWorld,

@@ -146,9 +146,10 @@ impl Explorer for MovableMarkerRun {
         }))
     }
 
-    fn choices(&mut self) -> Result<Vec<Dart>, InvalidStep> {
+    fn add_choices(&mut self, choices: &mut Vec<Dart>) -> Result<(), InvalidStep> {
         let is_ahead = |dart: &Dart| self.ends.iter().all(|end| end.edge != *dart);
-        Ok(self.map().unexplored().filter(is_ahead).collect())
+        choices.extend(self.map().unexplored().filter(is_ahead));
+        Ok(())
     }
 
     fn approach<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {

@@ -6,7 +6,7 @@
 
 use super::{
     Explorer, ExplorerInfo, FoldingRun, FoldingStep, InvalidStep, MapWalk, Mapped, MappingError,
-    MappingEvent, MovableEvent, ObservedWorld, StateKey, StepPurpose, movable_markers::handle,
+    MappingEvent, MovableEvent, ObservedWorld, StepPurpose, movable_markers::handle,
 };
 use crate::{
     aid::{AidAction, AidKind, string::LaidString},
@@ -65,8 +65,8 @@ impl Explorer for ShortStringRun {
         self.run.choose()
     }
 
-    fn choices(&mut self) -> Result<Vec<FoldingStep>, InvalidStep> {
-        self.run.choices()
+    fn add_choices(&mut self, choices: &mut Vec<FoldingStep>) -> Result<(), InvalidStep> {
+        self.run.add_choices(choices)
     }
 
     fn approach<W: ObservedWorld>(&mut self, choice: FoldingStep, world: &mut W) -> Mapped<W> {
@@ -79,10 +79,6 @@ impl Explorer for ShortStringRun {
 
     fn map_walk(&self) -> Option<&MapWalk> {
         self.run.map_walk()
-    }
-
-    fn state_key(&self) -> Option<StateKey> {
-        self.run.state_key()
     }
 
     fn purpose(&self, choice: Option<FoldingStep>) -> StepPurpose {

@@ -134,12 +134,12 @@ impl Explorer for TeamRun {
         Ok(walk.nearest_unexplored_from(pose, is_ahead))
     }
 
-    fn choices(&mut self) -> Result<Vec<Dart>, InvalidStep> {
-        if self.next_scout().is_none() {
-            return Ok(Vec::new());
+    fn add_choices(&mut self, choices: &mut Vec<Dart>) -> Result<(), InvalidStep> {
+        if self.next_scout().is_some() {
+            let is_ahead = |dart: &Dart| self.scouts.iter().all(|scout| !scout.is_beyond(*dart));
+            choices.extend(self.map().unexplored().filter(is_ahead));
         }
-        let is_ahead = |dart: &Dart| self.scouts.iter().all(|scout| !scout.is_beyond(*dart));
-        Ok(self.map().unexplored().filter(is_ahead).collect())
+        Ok(())
     }
 
     /// A scout follows an edge. When all stand at unknown ends, or no other edge is left, the explorer looks for them.

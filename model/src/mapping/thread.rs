@@ -92,9 +92,10 @@ impl Explorer for ThreadRun {
         Ok(self.last_frontier().and_then(|vertex| self.map().unexplored_at(vertex).next()))
     }
 
-    fn choices(&mut self) -> Result<Vec<Dart>, InvalidStep> {
+    fn add_choices(&mut self, choices: &mut Vec<Dart>) -> Result<(), InvalidStep> {
         let vertex = self.last_frontier();
-        Ok(vertex.map_or_else(Vec::new, |vertex| self.map().unexplored_at(vertex).collect()))
+        choices.extend(vertex.into_iter().flat_map(|vertex| self.map().unexplored_at(vertex)));
+        Ok(())
     }
 
     /// Winds the string in, up to the known end of the edge.

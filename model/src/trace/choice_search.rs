@@ -136,7 +136,8 @@ impl Search {
 
     /// Every choice that matches the trace.
     fn next(&mut self, trace: &Trace, before: &Way) -> Vec<Way> {
-        let mut choices = before.exploration.open_choices();
+        let mut choices = Vec::new();
+        before.exploration.add_open_choices(&mut choices);
         let tries_hypotheses = before.exploration.is_at_line_8();
         if tries_hypotheses {
             // The default is the last.

@@ -19,7 +19,8 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     mapping::{
-        Explorer, InvalidStep, MappingAlgorithm, MappingError, PartialMap, StateKey, with_explorer,
+        Explorer, InvalidStep, MappingAlgorithm, MappingError, PartialMap, StateLevel,
+        with_explorer,
     },
     marker::MarkerKind,
     percept::{Door, Percept, Sighting},
@@ -69,7 +70,7 @@ enum NextStep<C> {
 }
 
 /// What distinguishes runs with the same moves between two steps.
-type RunKey = (usize, StateKey, Option<(PartialMap, Dart)>);
+type RunKey = (usize, StateLevel, Vec<u32>, Option<(PartialMap, Dart)>);
 
 /// A choice, and the ways to go on that have not been tried, the last one first.
 struct Branch<'g, E: Explorer> {
@@ -216,7 +217,9 @@ impl<E: Explorer> Run<E> {
     /// `None` if its state is not compared with others.
     fn key(&self) -> Option<RunKey> {
         let map = self.explorer.map_walk().map(|walk| (walk.map().clone(), walk.robot()));
-        Some((self.moves, self.explorer.state_key()?, map))
+        let mut key = Vec::new();
+        let level = self.explorer.write_key(&mut key)?;
+        Some((self.moves, level, key, map))
     }
 }
 

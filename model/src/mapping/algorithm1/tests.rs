@@ -89,8 +89,8 @@ impl Flaw {
 impl Explorer for Broken {
     delegate_to_run!(DirectionalMarker, MappingChoice);
 
-    fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
-        self.run.choices()
+    fn add_choices(&mut self, choices: &mut Vec<MappingChoice>) -> Result<(), InvalidStep> {
+        self.run.add_choices(choices)
     }
 
     fn step<W: ObservedWorld>(&mut self, choice: MappingChoice, world: &mut W) -> Mapped<W> {

@@ -193,8 +193,9 @@ impl Explorer for FoldingRun {
         }
     }
 
-    fn choices(&mut self) -> Result<Vec<FoldingStep>, InvalidStep> {
-        Ok(self.open_steps())
+    fn add_choices(&mut self, choices: &mut Vec<FoldingStep>) -> Result<(), InvalidStep> {
+        choices.extend(self.open_steps());
+        Ok(())
     }
 
     /// Goes through the trail to the open dart that the step takes.

@@ -117,18 +117,19 @@ impl Explorer for WithMovableRun {
         Ok(Some(step))
     }
 
-    fn choices(&mut self) -> Result<Vec<WithMovableStep>, InvalidStep> {
-        let mut choices: Vec<_> = self.choose()?.into_iter().collect();
+    fn add_choices(&mut self, choices: &mut Vec<WithMovableStep>) -> Result<(), InvalidStep> {
+        let first = choices.len();
+        choices.extend(self.choose()?);
         for step in self.run.choices()? {
             let tests = self.tests_instead_of(step).into_iter().map(WithMovableStep::Test);
             let carry = self.carry_before(step).map(|(step, _)| step);
             for choice in tests.chain(carry).chain([WithMovableStep::Fold(step)]) {
-                if !choices.contains(&choice) {
+                if !choices[first..].contains(&choice) {
                     choices.push(choice);
                 }
             }
         }
-        Ok(choices)
+        Ok(())
     }
 
     fn step<W: ObservedWorld>(&mut self, step: WithMovableStep, world: &mut W) -> Mapped<W> {

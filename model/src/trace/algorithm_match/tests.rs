@@ -22,7 +22,7 @@ use crate::{
 fn chosen(graph: &EmbeddedGraph, numbers: &[u8]) -> Trace {
     let mut numbers = numbers.iter().cycle().map(|&number| usize::from(number));
     let choose = |run: &mut Algorithm1Run| {
-        let open = run.open_choices();
+        let open = run.choices()?;
         Ok(open.get(numbers.next().unwrap() % open.len().max(1)).copied())
     };
     doors_of(graph, Dart(0), |world| explore_with(&mut Algorithm1Run::default(), world, choose))
