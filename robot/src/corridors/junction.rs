@@ -121,6 +121,9 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             last.clone_from(self.in_last_view(&place).unwrap_or(&place));
             let seen = self.seen_arms(&place);
             doubted.add(seen.iter().filter(|arm| !arm.is_certain).map(|arm| arm.direction));
+            if self.params.corner.corners {
+                doubted.add_silent(self.silent_ways().into_iter());
+            }
             let certain = seen.iter().filter(|arm| arm.is_certain).map(|arm| arm.direction);
             if let Some(arm) = doubted.next(certain, least_doors) {
                 let (driven, is_arm) = self.look_into(arm, false)?;
@@ -298,11 +301,13 @@ struct DoubtedArms<'d> {
     driving: &'d CorridorParams,
     /// The directions, and whether they are arms; `None` if the robot has not driven into them.
     arms: Vec<(f64, IsArm)>,
+    /// The directions from which nothing came back: an arm may be there if the robot can drive there.
+    silent: Vec<f64>,
 }
 
 impl<'d> DoubtedArms<'d> {
     fn new(entry: f64, driving: &'d CorridorParams) -> Self {
-        Self { entry, driving, arms: Vec::new() }
+        Self { entry, driving, arms: Vec::new(), silent: Vec::new() }
     }
 
     fn is_old(&self, direction: f64) -> bool {
@@ -318,19 +323,35 @@ impl<'d> DoubtedArms<'d> {
         }
     }
 
+    /// Adds directions from which nothing comes back, each once.
+    fn add_silent(&mut self, directions: impl Iterator<Item = f64>) {
+        for direction in directions {
+            let is_tried = self.silent.iter().any(|&old| self.driving.is_same_arm(old, direction));
+            if !is_tried && !self.is_old(direction) {
+                self.silent.push(direction);
+                self.arms.push((direction, None));
+            }
+        }
+    }
+
     /// The robot has looked for an arm, and drove in the second direction. If it turned into another way, nothing is known of
-    /// this one.
+    /// this one. That is an error if it was seen.
     fn decide(
         &mut self,
         direction: f64,
         driven: f64,
         is_arm: IsArm,
     ) -> Result<(), CorridorFailure> {
-        let Self { driving, arms, .. } = self;
+        let Self { driving, arms, silent, .. } = self;
         let is_arm = is_arm.filter(|_| driving.is_same_arm(driven, direction));
-        let is_arm = is_arm.ok_or(CorridorFailure::Undecided)?;
-        if let Some(arm) = arms.iter_mut().find(|arm| driving.is_same_arm(arm.0, direction)) {
-            arm.1 = Some(is_arm);
+        let is_this = |other: f64| driving.is_same_arm(other, direction);
+        if is_arm.is_none() {
+            if !silent.iter().any(|&silent| is_this(silent)) {
+                return Err(CorridorFailure::Undecided);
+            }
+            arms.retain(|arm| !is_this(arm.0));
+        } else if let Some(arm) = arms.iter_mut().find(|arm| is_this(arm.0)) {
+            arm.1 = is_arm;
         }
         Ok(())
     }
@@ -447,6 +468,23 @@ mod tests {
             assert_eq!(decided, Err(CorridorFailure::Undecided), "{driven} {is_arm:?}");
         }
         assert!(!doubted.is_decided());
+        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(1.5));
+    }
+
+    #[test]
+    fn what_is_silent_is_an_arm_only_if_the_robot_drove_there_and_is_tried_once() {
+        let mut doubted = DoubtedArms::new(PI, &CorridorParams::DEFAULT);
+        let silent = || [1.5, -1.4, -3.1].into_iter();
+        doubted.add_silent(silent());
+        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(1.5));
+        doubted.decide(1.5, 0.2, Some(true)).unwrap();
+        doubted.add_silent(silent());
+        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(-1.4));
+        assert_eq!(doubted.doors(vec![1.6, 0.0]), [1.6, 0.0], "nothing was found out");
+        doubted.decide(-1.4, -1.4, Some(true)).unwrap();
+        assert_eq!(doubted.doors(vec![0.0]), [0.0, -1.4, PI]);
+        // It is seen now.
+        doubted.add([1.5].into_iter());
         assert_eq!(doubted.next([0.0].into_iter(), 3), Some(1.5));
     }
 

@@ -63,6 +63,15 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         }
     }
 
+    /// The directions of the gaps from which nothing comes back, from where it is.
+    pub(super) fn silent_ways(&self) -> Vec<f64> {
+        let Some(Frame { odometry, scan: Some(scan), .. }) = &self.last else { return Vec::new() };
+        let odometry_from_robot = from_robot(odometry);
+        let gaps = scan.silent_gaps(self.driving.gap).into_iter();
+        let middles = gaps.map(|[one, other]| odometry_from_robot * nalgebra::center(&one, &other));
+        middles.map(|middle| direction(self.at(), middle)).collect()
+    }
+
     /// The nearest part of a gap ahead in which it has not felt for a wall yet.
     fn gap_ahead(&self) -> Option<[Point2<f64>; 2]> {
         if self.felt.len() >= self.driving.feels {
