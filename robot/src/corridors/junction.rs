@@ -121,7 +121,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             last.clone_from(self.in_last_view(&place).unwrap_or(&place));
             let seen = self.seen_arms(&place);
             doubted.add(seen.iter().filter(|arm| !arm.is_certain).map(|arm| arm.direction));
-            if self.params.corner.corners {
+            if !self.scanner.sees_beyond_arms {
                 doubted.add_silent(self.silent_ways().into_iter());
             }
             let certain = seen.iter().filter(|arm| arm.is_certain).map(|arm| arm.direction);

@@ -99,10 +99,11 @@ pub struct CorridorExplorer<R, O = ()> {
     last: Option<Frame>,
 }
 
-/// Whether a scanner sees arms far enough, and all round.
+/// Whether a scanner sees arms far enough, and beyond their ends, and all round.
 #[derive(Clone, Copy, Debug, Default)]
 struct ScannerReach {
     sees_arms: bool,
+    sees_beyond_arms: bool,
     sees_all_round: bool,
 }
 
@@ -308,10 +309,11 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
         if self.trail.is_empty() {
             // A scanner that does not know its range may see no farther than any other.
             let range = scan.geometry().range_max;
+            let sees = |least: f64| range.is_finite() && range >= least;
             self.scanner = ScannerReach {
                 // The arms of hallways are short.
-                sees_arms: self.params.corner.corners
-                    || range.is_finite() && range >= self.driving.sees_arms,
+                sees_arms: self.params.corner.corners || sees(self.driving.sees_arms),
+                sees_beyond_arms: sees(self.driving.sees_beyond * self.params.arm.min_arm),
                 sees_all_round: scan.field_of_view() > self.driving.all_around,
             };
         }

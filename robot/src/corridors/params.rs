@@ -32,6 +32,9 @@ params! {
         /// corridor 2.45 m wide are a tenth of a radian apart there, and what is between them counts as free. A robot with
         /// another scanner drives into each opening.
         sees_arms: f64 = 24.5,
+        /// One that sees so many times as far as an arm is long sees the arms of hallways. A robot with another one drives into
+        /// each direction from which nothing comes back, too.
+        sees_beyond: f64 = 2.0,
         /// A robot with such a scanner notices ways that meet this near to it, ...
         near_opening: f64 = 1.5,
         /// ... takes those that meet this far beyond the clearance of their meeting point for one opening, ...
