@@ -77,7 +77,7 @@ fn buildings_are_mapped_by_laser_also_if_the_scanner_does_not_see_all_round() {
             match run.ending {
                 RunOutcome::Right => assert_eq!(run.moves[0], run.moves[1], "{what}"),
                 RunOutcome::GaveUp(_) => gave_up += 1,
-                wrong => panic!("{what}: {wrong:?}"),
+                RunOutcome::Wrong(why) => panic!("{what}: {why}"),
             }
         }
         assert!(gave_up <= 1, "{gave_up} with {field_of_view} degrees");
