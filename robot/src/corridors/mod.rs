@@ -313,7 +313,8 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             self.scanner = ScannerReach {
                 // The arms of hallways are short.
                 sees_arms: self.params.corner.corners || sees(self.driving.sees_arms),
-                sees_beyond_arms: sees(self.driving.sees_beyond * self.params.arm.min_arm),
+                sees_beyond_arms: !self.params.corner.corners
+                    || sees(self.driving.sees_beyond * self.params.arm.min_arm),
                 sees_all_round: scan.field_of_view() > self.driving.all_around,
             };
         }

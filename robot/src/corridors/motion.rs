@@ -99,6 +99,7 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
             self.sense()?;
         }
         self.heading = towards;
+        self.trail.leave();
         let (first, start) = (self.trail.len(), self.at());
         let mut begin = start;
         let mut is_leaving = true;

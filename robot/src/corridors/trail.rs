@@ -11,7 +11,12 @@ pub(super) struct Trail {
     points: Vec<Point2<f64>>,
     /// In their order.
     side_trips: Vec<Range<usize>>,
+    /// The number of the point at which it left the last place.
+    left: usize,
 }
+
+/// From here on a robot has moved, in metres.
+const MOVED: f64 = 0.05;
 
 /// Where a robot turned on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +39,11 @@ impl Trail {
 
     pub(super) fn len(&self) -> usize {
         self.points.len()
+    }
+
+    /// The robot leaves a place.
+    pub(super) fn leave(&mut self) {
+        self.left = self.points.len().saturating_sub(1);
     }
 
     /// What was driven from a number on was only to look at something: the robot has come back.
@@ -61,11 +71,20 @@ impl Trail {
         numbers.min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
-    /// Where the robot was before it entered a circle the last time, without side trips; `None` if it was never inside, or
-    /// never outside.
+    /// Where the robot was before it entered a circle the last time, since it left a place and without side trips: at that place
+    /// if it has not been outside since. `None` if it was never inside, or has not moved.
     pub(super) fn before_entering(&self, centre: Point2<f64>, radius: f64) -> Option<Point2<f64>> {
         let is_outside = |point: &Point2<f64>| distance(*point, centre) >= radius;
-        self.without_side_trips().skip_while(is_outside).find(is_outside)
+        let since = self.numbered().take_while(|(number, _)| *number > self.left);
+        let since = since.map(|(_, point)| point).chain(self.points.get(self.left).copied());
+        let mut before = None;
+        for point in since.skip_while(is_outside) {
+            before = Some(point);
+            if is_outside(&point) {
+                break;
+            }
+        }
+        before.filter(|before| distance(*before, centre) >= MOVED)
     }
 
     /// Where the end of the way, of this length and not from before this number, is farthest aside from a straight line;
@@ -138,7 +157,24 @@ mod tests {
         // It has left the circle, and was in it before.
         assert_eq!(before, Some(Point2::new(2.0, 0.0)));
         assert_eq!(trail().before_entering(Point2::new(2.0, 5.0), 1.0), None);
+        assert_eq!(trail().before_entering(Point2::origin(), 1.0), None, "it was never outside");
         assert_eq!(trail().without_side_trips().count(), 7);
+    }
+
+    /// It came to (6, 0) from the west, and goes back there.
+    #[test]
+    fn where_a_robot_came_from_is_the_place_that_it_left_if_that_is_near() {
+        let mut trail = trail();
+        trail.leave();
+        let before = |trail: &Trail| {
+            let here = *trail.points.last().unwrap();
+            trail.before_entering(here, 2.5)
+        };
+        assert_eq!(before(&trail), None, "it has not moved");
+        for (x, came_from) in [(5.0, 6.0), (4.0, 6.0), (3.0, 6.0), (2.0, 5.0)] {
+            trail.push(Point2::new(x, 0.0));
+            assert_eq!(before(&trail), Some(Point2::new(came_from, 0.0)));
+        }
     }
 
     #[test]
