@@ -125,9 +125,10 @@ impl<R: Robot, O: RunObserver> CorridorExplorer<R, O> {
                 doubted.add_silent(self.silent_ways().into_iter());
             }
             let certain = seen.iter().filter(|arm| arm.is_certain).map(|arm| arm.direction);
-            if let Some(arm) = doubted.next(certain, least_doors) {
+            let certain: Vec<f64> = certain.collect();
+            if let Some(arm) = doubted.next(&certain, least_doors) {
                 let (driven, is_arm) = self.look_into(arm, false)?;
-                doubted.decide(arm, driven, is_arm)?;
+                doubted.decide(arm, driven, is_arm, &certain)?;
                 continue;
             }
             let is_undecided = place.arms.iter().any(|arm| arm.certainty == Certainty::Possible);
@@ -334,16 +335,20 @@ impl<'d> DoubtedArms<'d> {
         }
     }
 
-    /// The robot has looked for an arm, and drove in the second direction. If it turned into another way, nothing is known of
-    /// this one. That is an error if it was seen.
+    /// The robot has looked for an arm, and drove in the second direction. If it turned into another way, as into one of these
+    /// certain arms, nothing is known of this one. That is an error if it was seen.
     fn decide(
         &mut self,
         direction: f64,
         driven: f64,
         is_arm: IsArm,
+        certain: &[f64],
     ) -> Result<(), CorridorFailure> {
-        let Self { driving, arms, silent, .. } = self;
-        let is_arm = is_arm.filter(|_| driving.is_same_arm(driven, direction));
+        let Self { entry, driving, arms, silent } = self;
+        let off = |arm: f64| wrapped(arm - driven).abs();
+        let others = certain.iter().copied().chain([*entry]).chain(arms.iter().map(|arm| arm.0));
+        let is_nearest = others.into_iter().all(|other| off(other) >= off(direction));
+        let is_arm = is_arm.filter(|_| is_nearest && driving.is_same_arm(driven, direction));
         let is_this = |other: f64| driving.is_same_arm(other, direction);
         if is_arm.is_none() {
             if !silent.iter().any(|&silent| is_this(silent)) {
@@ -367,8 +372,7 @@ impl<'d> DoubtedArms<'d> {
     }
 
     /// The arm into which to drive next, if with all those in doubt and these certain ones there are enough doors.
-    fn next(&self, certain: impl Iterator<Item = f64>, least_doors: usize) -> Option<f64> {
-        let certain: Vec<f64> = certain.collect();
+    fn next(&self, certain: &[f64], least_doors: usize) -> Option<f64> {
         let is_certain =
             |arm: f64| certain.iter().any(|&known| self.driving.is_same_arm(known, arm));
         let is_open = |arm: &&(f64, IsArm)| arm.1.is_none() && !is_certain(arm.0);
@@ -445,16 +449,15 @@ mod tests {
 
     #[test]
     fn a_robot_drives_into_each_arm_that_was_in_doubt_and_believes_that_whatever_it_sees_later() {
-        let none = || [].into_iter();
         let mut doubted = DoubtedArms::new(PI, &CorridorParams::DEFAULT);
         doubted.add([1.5, -1.4, -3.1].into_iter());
-        assert_eq!(doubted.next([-1.5].into_iter(), 3), Some(1.5), "the other one is certain");
-        assert_eq!(doubted.next([0.0].into_iter(), 5), None, "there are at most four doors");
-        doubted.decide(1.5, 1.6, Some(true)).unwrap();
+        assert_eq!(doubted.next(&[-1.5], 3), Some(1.5), "the other one is certain");
+        assert_eq!(doubted.next(&[0.0], 5), None, "there are at most four doors");
+        doubted.decide(1.5, 1.6, Some(true), &[]).unwrap();
         doubted.add([1.3].into_iter());
-        assert_eq!(doubted.next(none(), 3), Some(-1.4), "no view shows any of them now");
-        doubted.decide(-1.4, -1.4, Some(true)).unwrap();
-        assert_eq!(doubted.next(none(), 3), None);
+        assert_eq!(doubted.next(&[], 3), Some(-1.4), "no view shows any of them now");
+        doubted.decide(-1.4, -1.4, Some(true), &[]).unwrap();
+        assert_eq!(doubted.next(&[], 3), None);
         assert_eq!(doubted.doors(Vec::new()), [1.5, -1.4, PI], "it came in somewhere, too");
         assert_eq!(doubted.doors(vec![3.0, 1.6]), [3.0, 1.6, -1.4]);
     }
@@ -464,11 +467,17 @@ mod tests {
         let mut doubted = DoubtedArms::new(PI, &CorridorParams::DEFAULT);
         doubted.add([1.5].into_iter());
         for (driven, is_arm) in [(0.2, Some(true)), (0.2, Some(false)), (1.5, None)] {
-            let decided = doubted.decide(1.5, driven, is_arm);
+            let decided = doubted.decide(1.5, driven, is_arm, &[]);
             assert_eq!(decided, Err(CorridorFailure::Undecided), "{driven} {is_arm:?}");
         }
+        // It drove nearer to the direction of another arm.
+        for (driven, certain) in [(1.1, vec![0.0, 0.95]), (2.0, vec![2.3])] {
+            let decided = doubted.decide(1.5, driven, Some(true), &certain);
+            assert_eq!(decided, Err(CorridorFailure::Undecided), "{driven} {certain:?}");
+        }
         assert!(!doubted.is_decided());
-        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(1.5));
+        assert_eq!(doubted.next(&[0.0], 3), Some(1.5));
+        doubted.decide(1.5, 1.2, Some(true), &[0.0, 0.8]).unwrap();
     }
 
     #[test]
@@ -476,26 +485,26 @@ mod tests {
         let mut doubted = DoubtedArms::new(PI, &CorridorParams::DEFAULT);
         let silent = || [1.5, -1.4, -3.1].into_iter();
         doubted.add_silent(silent());
-        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(1.5));
-        doubted.decide(1.5, 0.2, Some(true)).unwrap();
+        assert_eq!(doubted.next(&[0.0], 3), Some(1.5));
+        doubted.decide(1.5, 0.2, Some(true), &[]).unwrap();
         doubted.add_silent(silent());
-        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(-1.4));
+        assert_eq!(doubted.next(&[0.0], 3), Some(-1.4));
         assert_eq!(doubted.doors(vec![1.6, 0.0]), [1.6, 0.0], "nothing was found out");
-        doubted.decide(-1.4, -1.4, Some(true)).unwrap();
+        doubted.decide(-1.4, -1.4, Some(true), &[]).unwrap();
         assert_eq!(doubted.doors(vec![0.0]), [0.0, -1.4, PI]);
         // It is seen now.
         doubted.add([1.5].into_iter());
-        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(1.5));
+        assert_eq!(doubted.next(&[0.0], 3), Some(1.5));
     }
 
     #[test]
     fn what_is_no_arm_is_no_door_and_the_last_one_in_doubt_may_not_matter() {
         let mut doubted = DoubtedArms::new(PI, &CorridorParams::DEFAULT);
         doubted.add([1.5, -1.4].into_iter());
-        doubted.decide(1.5, 1.5, Some(false)).unwrap();
-        assert_eq!(doubted.next([].into_iter(), 3), None, "two doors are no junction");
-        assert_eq!(doubted.next([].into_iter(), 2), Some(-1.4), "but perhaps a corner");
-        assert_eq!(doubted.next([0.0].into_iter(), 3), Some(-1.4));
+        doubted.decide(1.5, 1.5, Some(false), &[]).unwrap();
+        assert_eq!(doubted.next(&[], 3), None, "two doors are no junction");
+        assert_eq!(doubted.next(&[], 2), Some(-1.4), "but perhaps a corner");
+        assert_eq!(doubted.next(&[0.0], 3), Some(-1.4));
         assert_eq!(doubted.doors(vec![1.6, 0.0]), [0.0]);
     }
 
