@@ -116,6 +116,13 @@ impl<'a> LocalWays<'a> {
     }
 }
 
+/// Two readings are on one wall if each is at most this part of the distance between them off the line through the other
+/// one and the next: door frames are deep.
+const STRAIGHT: f64 = 0.3;
+/// They also are if one of them is at most this part off: the wall ends with the other one. It may end before that, where the
+/// wall behind it happens to be near its line.
+const CONTINUED: f64 = 0.08;
+
 /// The rays of a scan.
 pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
     let mut rays = Rays::default();
@@ -158,10 +165,12 @@ pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
         let four = [index.checked_sub(1).and_then(end), end(index), end(index + 1), end(index + 2)];
         let [Some(before), Some(one), Some(two), Some(after)] = four else { continue };
         let gap = distance(one, two);
-        let on_line = |line: [Point2<f64>; 2], towards: Point2<f64>, range: f64| {
-            met(from, towards, line).is_some_and(|met| (met - range).abs() < 0.3 * gap.max(0.3))
+        let off = |line: [Point2<f64>; 2], towards: Point2<f64>, range: f64| {
+            met(from, towards, line).map_or(f64::INFINITY, |met| (met - range).abs() / gap.max(0.3))
         };
-        let is_straight = on_line([before, one], two, other) || on_line([after, two], one, range);
+        let off = [off([before, one], two, other), off([after, two], one, range)];
+        let is_straight =
+            off.iter().all(|&off| off < STRAIGHT) || off.iter().any(|&off| off < CONTINUED);
         if (params.cell..=params.bridge).contains(&gap) && is_straight {
             rays.walls.push([one, two]);
         }

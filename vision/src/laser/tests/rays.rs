@@ -72,6 +72,28 @@ fn the_ends_of_neighbouring_rays_on_one_wall_are_a_piece_of_it_if_they_are_a_cel
     assert!(rays.walls.iter().flatten().all(|end| (end.y.abs() - 1.0).abs() < 1e-5));
 }
 
+#[test]
+fn a_wall_goes_on_to_the_next_reading_if_that_is_on_its_line_and_not_if_it_is_of_a_wall_behind() {
+    // A wall 1 m to the left, with a reading each degree. Those up to 6 degrees are of something else.
+    let goes_on = |others: &dyn Fn(f64) -> f64| {
+        let sixth = 6.5_f64.to_radians();
+        let range =
+            |bearing: f64| if bearing < sixth { others(bearing) } else { 1.0 / bearing.sin() };
+        let rays = rays(&Scan::each_degree(4, 6, range), &LocalMapParams::default());
+        let is_between = |[one, other]: &[Point2<f64>; 2]| {
+            one.y.atan2(one.x) < sixth && other.y.atan2(other.x) > sixth
+        };
+        rays.walls.iter().any(is_between)
+    };
+    let onwards = 1.0 / 6_f64.to_radians().sin();
+    let gap = onwards - 1.0 / 7_f64.to_radians().sin();
+    assert!(goes_on(&|_| onwards + 0.02 * gap), "it ends at the wall of a corridor across");
+    for behind in [0.15, 0.3, 1.0] {
+        assert!(!goes_on(&|_| onwards + behind * gap), "that wall is farther away: {behind}");
+    }
+    assert!(goes_on(&|bearing| 1.05 / bearing.sin()), "a door of a room, 5 cm behind the wall");
+}
+
 /// Where rays that were not measured begin and end, between others, as the distances from the scanner.
 fn between(rays: &Rays) -> Vec<[f64; 2]> {
     let ends = rays.free.iter().map(|ends| ends.map(|end| end.coords.norm()));
