@@ -400,6 +400,8 @@ fn known_size(explorer: &impl Explorer) -> (usize, usize) {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
+
     use super::*;
     use crate::{
         any_graph::{StopAt, starts},
@@ -415,6 +417,56 @@ mod tests {
         let stopped = StopAt::new(1);
         let ways = every_way(Algorithm1Run::default(), &cycle, Dart(0), 1000, &stopped).unwrap();
         assert_eq!(ways.limit, Some(ChoicesLimit::Interrupted));
+    }
+
+    /// The states of a start between two rounds, and those within one: for each state between two, and each edge there, the
+    /// sets of hypotheses that can be left, and none if the place is new.
+    fn states(graph: &EmbeddedGraph) -> [u64; 2] {
+        let mut world = GraphWorld::with_aid(graph, DirectionalMarker, Dart(0));
+        let mut begin = Algorithm1Run::default();
+        begin.begin(&mut world).unwrap();
+        let key = |run: &Algorithm1Run| {
+            let mut key = Vec::new();
+            (run.write_key(&mut key).unwrap(), key)
+        };
+        let (mut between, mut within) = (HashSet::from([key(&begin).1]), 0);
+        let mut open = vec![(begin, world)];
+        while let Some((mut begin, world)) = open.pop() {
+            for edge in begin.choices().unwrap() {
+                let mut left = HashSet::new();
+                let mut round = vec![(begin.clone(), world.clone(), edge)];
+                while let Some((mut run, mut world, choice)) = round.pop() {
+                    run.step(choice, &mut world).unwrap();
+                    let (level, key) = key(&run);
+                    if level == StateLevel::WithinRound {
+                        if left.insert(key) {
+                            let choices = run.choices().unwrap();
+                            let next = |choice| (run.clone(), world.clone(), choice);
+                            round.extend(choices.into_iter().map(next));
+                        }
+                        continue;
+                    }
+                    if known_size(&run).0 > known_size(&begin).0 {
+                        left.insert(Vec::new());
+                    }
+                    if between.insert(key) {
+                        open.push((run, world));
+                    }
+                }
+                within += left.len() as u64;
+            }
+        }
+        [between.len() as u64, within]
+    }
+
+    #[test]
+    fn each_state_is_begun_once() {
+        let graphs = (1..=3).flat_map(|edges| starts(Class::Multigraph, edges));
+        for graph in graphs.chain([EmbeddedGraph::cycle(4), EmbeddedGraph::cycle(5)]) {
+            let explorer = Algorithm1Run::default();
+            let ways = every_way(explorer, &graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
+            assert_eq!([ways.states, ways.within_rounds], states(&graph), "{graph:?}");
+        }
     }
 
     /// Algorithm 1 with other choices, or with another bound.
