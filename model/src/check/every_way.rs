@@ -82,23 +82,22 @@ fn every_way_in<E: Explorer>(
     let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
     explorer.limit_darts(graph.dart_count());
     explorer.begin(&mut world)?;
-    let mut search = Search {
+    let search = Search {
         facing,
         budget,
         watch,
+        is_compared: explorer.write_key(&mut memory.key).is_some(),
         begun: [0; 2],
         bytes: 0,
         limit: None,
         rounds: Vec::new(),
         stack: Vec::new(),
+        all: Futures::default(),
         memory,
     };
-    let is_compared = explorer.write_key(&mut Vec::new()).is_some();
-    let Futures { runs, costs } = search.run(world, Box::new(explorer))?;
-    check_moves(costs.max().unwrap_or(0), bound)?;
-    let [begun, within_rounds] = search.begun;
-    let states = if is_compared { search.memory.known.len() as u64 } else { begun };
-    Ok(EveryWay { states, within_rounds, runs, costs, limit: search.limit })
+    let ways = search.run(world, Box::new(explorer))?;
+    check_moves(ways.costs.max().unwrap_or(0), bound)?;
+    Ok(ways)
 }
 
 /// What can follow a state: the number of runs, and the moves that they still take.
@@ -159,10 +158,18 @@ struct SearchFrame<'g, E: Explorer> {
     bytes: usize,
 }
 
+impl<E: Explorer> SearchFrame<'_, E> {
+    fn is_between_rounds(&self) -> bool {
+        matches!(self.key, Some((StateLevel::BetweenRounds, _)))
+    }
+}
+
 struct Search<'g, 'm, E: Explorer> {
     facing: Dart,
     budget: u64,
     watch: &'m dyn Watch,
+    /// Whether equal states are explored once.
+    is_compared: bool,
     /// States begun between two rounds, and within one.
     begun: [u64; 2],
     bytes: usize,
@@ -170,6 +177,8 @@ struct Search<'g, 'm, E: Explorer> {
     /// The rounds that have begun: one for each state between two rounds on the stack.
     rounds: Vec<Round>,
     stack: Vec<SearchFrame<'g, E>>,
+    /// What can follow the first state.
+    all: Futures,
     memory: &'m mut SearchMemory<E>,
 }
 
@@ -203,27 +212,20 @@ impl<E: Explorer> Default for SearchMemory<E> {
 
 impl<'g, E: Explorer> Search<'g, '_, E> {
     /// What can follow the first state. The stack is explicit: it is as deep as the run has choices.
-    fn run(&mut self, world: GraphWorld<'g, E::Aid>, explorer: Box<E>) -> Result<Futures, Flaw> {
-        let mut found = self.enter(world, explorer)?;
+    fn run(mut self, world: GraphWorld<'g, E::Aid>, explorer: Box<E>) -> Result<EveryWay, Flaw> {
+        self.enter(world, explorer)?;
         while let Some(frame) = self.stack.last_mut() {
-            if let Some(futures) = found.take() {
-                frame.futures.include(&futures, frame.moves);
-                if matches!(frame.key, Some((StateLevel::BetweenRounds, _)))
-                    && let Some(Round { mut known, bytes, .. }) = self.rounds.pop()
-                {
-                    self.bytes -= bytes;
-                    known.clear();
-                    self.memory.spare_rounds.push(known);
-                }
-            }
             let next = self.memory.choices.get(frame.next_choice).copied();
             frame.next_choice += 1;
-            found = match next.filter(|_| self.limit != Some(ChoicesLimit::Interrupted)) {
+            match next.filter(|_| self.limit != Some(ChoicesLimit::Interrupted)) {
                 Some(choice) => self.follow(choice)?,
                 None => self.leave(),
-            };
+            }
         }
-        Ok(found.unwrap_or_default())
+        let [begun, within_rounds] = self.begun;
+        let states = if self.is_compared { self.memory.known.len() as u64 } else { begun };
+        let Futures { runs, costs } = self.all;
+        Ok(EveryWay { states, within_rounds, runs, costs, limit: self.limit })
     }
 
     /// Whether one more state may be begun, between two rounds (0) or within one (1).
@@ -242,20 +244,16 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         may
     }
 
-    /// Enters a state. Returns what can follow it, or `None` if that must be searched for: then the state is on
-    /// the stack.
-    fn enter(
-        &mut self,
-        world: GraphWorld<'g, E::Aid>,
-        mut explorer: Box<E>,
-    ) -> Result<Option<Futures>, Flaw> {
+    /// Enters a state. If what can follow it must be searched for, it is on the stack then.
+    fn enter(&mut self, world: GraphWorld<'g, E::Aid>, mut explorer: Box<E>) -> Result<(), Flaw> {
         let level = explorer.write_key(&mut self.memory.key);
         let known = known_size(&*explorer);
         let is_new_place = level == Some(StateLevel::BetweenRounds)
             && self.rounds.last().is_some_and(|last| known.0 > last.vertices);
-        if let Some(futures) = self.known(level, is_new_place, &world, &explorer)? {
+        if self.is_known(level, is_new_place, &world, &explorer)? {
             self.memory.spare.push(explorer);
-            return Ok(Some(futures));
+            self.end_round();
+            return Ok(());
         }
         let first_choice = self.memory.choices.len();
         explorer.add_choices(&mut self.memory.choices)?;
@@ -264,7 +262,7 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         // At the end of a run there is no choice: then the run is judged.
         if choices == 0 {
             judge(&*explorer, self.facing, &world, &mut self.memory.candidate)?;
-            futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
+            futures = Futures { runs: 1, costs: Costs::nothing() };
         }
         let bytes = 500 + 100 * known.1 + 20 * choices;
         self.bytes += bytes;
@@ -280,28 +278,29 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
             futures,
             bytes,
         });
-        Ok(None)
+        Ok(())
     }
 
-    /// What can follow a state, without a search: if it was searched before, or the search has reached its limit.
-    fn known(
+    /// Whether what can follow a state takes no search: if it was searched before, or the search has reached its limit. Then
+    /// that can follow the state on top of the stack, too.
+    fn is_known(
         &mut self,
         level: Option<StateLevel>,
         is_new_place: bool,
         world: &GraphWorld<'g, E::Aid>,
         explorer: &E,
-    ) -> Result<Option<Futures>, Flaw> {
+    ) -> Result<bool, Flaw> {
         let is_within = level == Some(StateLevel::WithinRound);
-        if is_within && let Some(known) = self.in_round(&self.memory.key) {
-            return Ok(Some(known));
+        if is_within || is_new_place {
+            let hypotheses = if is_within { &self.memory.key[..] } else { &[] };
+            let round = self.rounds.last().filter(|round| round.meets(self.stack.len()));
+            if let Some(futures) = round.and_then(|round| round.known.get(hypotheses)) {
+                include(&mut self.stack, &mut self.all, futures);
+                return Ok(true);
+            }
         }
-        if is_new_place {
-            if let Some(known) = self.in_round(&[]) {
-                return Ok(Some(known));
-            }
-            if !self.begin(1) {
-                return Ok(Some(Futures::default()));
-            }
+        if is_new_place && !self.begin(1) {
+            return Ok(true);
         }
         if level == Some(StateLevel::BetweenRounds)
             && let Some((futures, image)) = self.memory.known.get(&self.memory.key[..])
@@ -312,16 +311,20 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
                 let believed = explorer.map_walk().map_or(FACING, MapWalk::robot);
                 return Err(Flaw::WrongPose { believed, image, truly });
             }
-            let futures = futures.clone();
-            self.keep_new_place(is_new_place, &futures);
-            return Ok(Some(futures));
+            include(&mut self.stack, &mut self.all, futures);
+            if is_new_place {
+                let futures = futures.clone();
+                self.keep_in_round(Key::new(), futures);
+            }
+            return Ok(true);
         }
-        Ok((!self.begin(usize::from(is_within))).then(Futures::default))
+        Ok(!self.begin(usize::from(is_within)))
     }
 
-    /// What can follow a choice at the state on top of the stack. As [`Self::enter`].
-    fn follow(&mut self, choice: E::Choice) -> Result<Option<Futures>, Flaw> {
-        let Some(frame) = self.stack.last_mut() else { return Ok(None) };
+    /// Makes a choice at the state on top of the stack, and enters the state that follows.
+    fn follow(&mut self, choice: E::Choice) -> Result<(), Flaw> {
+        let stack = self.stack.len();
+        let Some(frame) = self.stack.last_mut() else { return Ok(()) };
         let mut world = frame.world.clone();
         let next = if frame.next_choice == self.memory.choices.len() {
             frame.explorer.take()
@@ -332,63 +335,65 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         } else {
             frame.explorer.clone()
         };
-        let Some(mut next) = next else { return Ok(None) };
+        let Some(mut next) = next else { return Ok(()) };
         next.step(choice, &mut world)?;
         frame.moves = world.moves() - frame.world.moves();
-        if let Some((StateLevel::BetweenRounds, _)) = &frame.key {
+        if frame.is_between_rounds() {
             let known = self.memory.spare_rounds.pop().unwrap_or_default();
-            let (vertices, first) = (frame.known.0, self.stack.len());
+            let (vertices, first) = (frame.known.0, stack);
             self.rounds.push(Round { vertices, first, known, bytes: 0 });
         }
         self.enter(world, next)
     }
 
-    /// Removes the state on top of the stack, whose choices were all followed. Returns what can follow it.
-    fn leave(&mut self) -> Option<Futures> {
-        let SearchFrame {
-            key,
-            is_new_place,
-            world,
-            explorer,
-            known,
-            first_choice,
-            futures,
-            bytes,
-            ..
-        } = self.stack.pop()?;
-        self.memory.choices.truncate(first_choice);
-        self.bytes -= bytes;
+    /// Removes the state on top of the stack, whose choices were all followed. What can follow it can follow the one below.
+    fn leave(&mut self) {
+        let Some(frame) = self.stack.pop() else { return };
+        let SearchFrame { key, is_new_place, world, explorer, known, futures, .. } = frame;
+        self.memory.choices.truncate(frame.first_choice);
+        self.bytes -= frame.bytes;
+        include(&mut self.stack, &mut self.all, &futures);
         match key {
             None => {}
-            Some((StateLevel::WithinRound, left)) => self.keep_in_round(left, &futures),
+            Some((StateLevel::WithinRound, left)) => self.keep_in_round(left, futures),
             Some((StateLevel::BetweenRounds, key)) => {
                 self.bytes += 100 + 20 * known.1 + futures.bytes();
-                self.memory.known.insert(key, (futures.clone(), world.pose()));
-                self.keep_new_place(is_new_place, &futures);
+                if is_new_place {
+                    self.keep_in_round(Key::new(), futures.clone());
+                }
+                self.memory.known.insert(key, (futures, world.pose()));
             }
         }
         self.memory.spare.extend(explorer);
-        Some(futures)
+        self.end_round();
     }
 
-    fn in_round(&self, hypotheses: &[u32]) -> Option<Futures> {
-        let round = self.rounds.last().filter(|round| round.meets(self.stack.len()))?;
-        round.known.get(hypotheses).cloned()
-    }
-
-    fn keep_new_place(&mut self, is_new_place: bool, futures: &Futures) {
-        if is_new_place {
-            self.keep_in_round(Key::new(), futures);
+    /// Ends the round that a choice at the state on top of the stack began: what can follow that choice is known.
+    fn end_round(&mut self) {
+        if self.stack.last().is_some_and(SearchFrame::is_between_rounds)
+            && let Some(Round { mut known, bytes, .. }) = self.rounds.pop()
+        {
+            self.bytes -= bytes;
+            known.clear();
+            self.memory.spare_rounds.push(known);
         }
     }
 
-    fn keep_in_round(&mut self, hypotheses: Key, futures: &Futures) {
+    fn keep_in_round(&mut self, hypotheses: Key, futures: Futures) {
         let stack = self.stack.len();
         let Some(round) = self.rounds.last_mut().filter(|round| round.meets(stack)) else { return };
-        let bytes = 40 + 4 * hypotheses.len() + futures.bytes();
+        let bytes = 40 + size_of::<u32>() * hypotheses.len() + futures.bytes();
         round.bytes += bytes;
         self.bytes += bytes;
-        round.known.insert(hypotheses, futures.clone());
+        round.known.insert(hypotheses, futures);
+    }
+}
+
+/// What can follow a state can follow the one on top of the stack, too, or all runs if there is none.
+fn include<E: Explorer>(stack: &mut [SearchFrame<'_, E>], all: &mut Futures, futures: &Futures) {
+    match stack.last_mut() {
+        Some(frame) => frame.futures.include(futures, frame.moves),
+        None => all.include(futures, 0),
     }
 }
 
