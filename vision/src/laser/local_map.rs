@@ -119,9 +119,6 @@ impl<'a> LocalWays<'a> {
 /// Two readings are on one wall if each is at most this part of the distance between them off the line through the other
 /// one and the next: door frames are deep.
 const STRAIGHT: f64 = 0.3;
-/// They also are if one of them is at most this part off: the wall ends with the other one. It may end before that, where the
-/// wall behind it happens to be near its line.
-const CONTINUED: f64 = 0.08;
 
 /// The rays of a scan.
 pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
@@ -170,7 +167,7 @@ pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
         };
         let off = [off([before, one], two, other), off([after, two], one, range)];
         let is_straight =
-            off.iter().all(|&off| off < STRAIGHT) || off.iter().any(|&off| off < CONTINUED);
+            off.iter().all(|&off| off < STRAIGHT) || off.iter().any(|&off| off < params.continued);
         if (params.cell..=params.bridge).contains(&gap) && is_straight {
             rays.walls.push([one, two]);
         }
