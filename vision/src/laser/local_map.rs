@@ -116,10 +116,6 @@ impl<'a> LocalWays<'a> {
     }
 }
 
-/// Two readings are on one wall if each is at most this part of the distance between them off the line through the other
-/// one and the next: door frames are deep.
-const STRAIGHT: f64 = 0.3;
-
 /// The rays of a scan.
 pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
     let mut rays = Rays::default();
@@ -166,8 +162,8 @@ pub(super) fn rays(scan: &Scan, params: &LocalMapParams) -> Rays {
             met(from, towards, line).map_or(f64::INFINITY, |met| (met - range).abs() / gap.max(0.3))
         };
         let off = [off([before, one], two, other), off([after, two], one, range)];
-        let is_straight =
-            off.iter().all(|&off| off < STRAIGHT) || off.iter().any(|&off| off < params.continued);
+        let is_straight = off.iter().all(|&off| off < params.straight)
+            || off.iter().any(|&off| off < params.continued);
         if (params.cell..=params.bridge).contains(&gap) && is_straight {
             rays.walls.push([one, two]);
         }

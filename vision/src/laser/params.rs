@@ -112,8 +112,11 @@ params! {
         /// Two neighbouring rays end on one wall if their ends are nearer to each other than this, and on a line with a
         /// third. Geometry: along a corridor rays meet its walls far apart.
         bridge: f64 = 3.0,
-        /// A wall that ends with one of them goes on to the other one if that is at most this part of their distance off its
-        /// line. Logs: a wall behind it may be near its line. In hallways with shorter arms a gap is an arm more often.
+        /// Each of the two is at most this part of their distance off the line through the other one and the next reading.
+        /// Geometry: door frames are deep.
+        straight: f64 = 0.3,
+        /// Or one of them is at most this part off: the wall ends with the other one. Simulated buildings: the far wall of an
+        /// arm may lie near the line of a corridor's wall, which ends before. [`LaserParams::HALLWAYS`] allow more: more maps are right.
         continued: f64 = 0.08,
         /// Readings without a return between two others that are at most this far apart show free space up to the nearer
         /// one of these. Geometry: the walls of a corridor end at the scanner's range, at least 26 m away.
